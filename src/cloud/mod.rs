@@ -1,0 +1,1 @@
+//! Points from files: reading, neighbours, spacing, normals, winding number.

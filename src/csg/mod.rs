@@ -1,0 +1,4 @@
+//! Constructive solid geometry on the intervals of a ray.
+mod spans;
+
+pub use spans::{Boundary, Span, Spans};

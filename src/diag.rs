@@ -1,0 +1,164 @@
+//! Diagnostics: what is wrong with something a user wrote, where, and the way out. One type with three
+//! readers: the terminal, `--format json`, and editors. How it is printed is left to [`crate::report`].
+
+use crate::source::Span;
+
+/// How much a diagnostic weighs.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, PartialOrd, Ord)]
+pub enum Severity {
+    /// Nothing is made.
+    Error,
+    /// Something is made, perhaps not what was meant. Never changes an exit code.
+    Warning,
+}
+
+/// Which kind of failure an error is: it chooses the exit code.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Fault {
+    /// The command line is wrong (2).
+    Usage,
+    /// A scene, a cloud or a value in them is wrong (65).
+    Input,
+    /// A file is missing or cannot be read (66).
+    Missing,
+    /// This program is wrong (70).
+    Internal,
+    /// An output cannot be created (73).
+    Output,
+    /// Reading or writing failed on the way (74).
+    Io,
+    /// Something the settings do not allow (77).
+    Refused,
+}
+
+impl Fault {
+    /// The process exit code (`sysexits.h`).
+    pub fn exit_code(self) -> u8 {
+        match self {
+            Fault::Usage => 2,
+            Fault::Input => 65,
+            Fault::Missing => 66,
+            Fault::Internal => 70,
+            Fault::Output => 73,
+            Fault::Io => 74,
+            Fault::Refused => 77,
+        }
+    }
+}
+
+/// A place and what it has to do with the matter.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Label {
+    /// The place.
+    pub span: Span,
+    /// A few words beside the place; may be empty.
+    pub text: String,
+}
+
+/// Something to tell the user.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Diagnostic {
+    /// Error or warning.
+    pub severity: Severity,
+    /// The code, such as `E0301`.
+    pub code: &'static str,
+    /// One sentence, no final stop.
+    pub message: String,
+    /// The first is where it is; the others help to understand it. Empty where there is no place.
+    pub labels: Vec<Label>,
+    /// The way out.
+    pub help: Option<String>,
+    /// Facts beside the matter.
+    pub notes: Vec<String>,
+    /// The kind of failure; of no meaning for a warning.
+    pub fault: Fault,
+}
+
+impl Diagnostic {
+    /// An error about something the user wrote.
+    pub fn error(code: &'static str, message: impl Into<String>) -> Diagnostic {
+        Diagnostic {
+            severity: Severity::Error,
+            code,
+            message: message.into(),
+            labels: Vec::new(),
+            help: None,
+            notes: Vec::new(),
+            fault: Fault::Input,
+        }
+    }
+
+    /// A warning.
+    pub fn warning(code: &'static str, message: impl Into<String>) -> Diagnostic {
+        Diagnostic { severity: Severity::Warning, ..Diagnostic::error(code, message) }
+    }
+
+    /// Adds a place; the first added is the main one.
+    pub fn at(mut self, span: Span, text: impl Into<String>) -> Diagnostic {
+        self.labels.push(Label { span, text: text.into() });
+        self
+    }
+
+    /// Sets the way out.
+    pub fn help(mut self, help: impl Into<String>) -> Diagnostic {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// Adds a fact.
+    pub fn note(mut self, note: impl Into<String>) -> Diagnostic {
+        self.notes.push(note.into());
+        self
+    }
+
+    /// Sets the kind of failure.
+    pub fn fault(mut self, fault: Fault) -> Diagnostic {
+        self.fault = fault;
+        self
+    }
+
+    /// Whether it stops the run.
+    pub fn is_error(&self) -> bool {
+        self.severity == Severity::Error
+    }
+}
+
+/// The known name nearest to `name`, for "did you mean": at most a third of its letters wrong (Levenshtein
+/// distance, the first of several).
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let limit = (name.chars().count() / 3).max(1);
+    known
+        .into_iter()
+        .map(|k| (distance(name, k), k))
+        .filter(|(d, _)| *d <= limit)
+        .min_by_key(|(d, _)| *d)
+        .map(|(_, k)| k)
+}
+
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, cb) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(ca != *cb);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(row[j] + 1).min(row[j + 1] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_name_is_found_and_far_ones_are_not() {
+        let known = ["sphere", "box", "cylinder"];
+        assert_eq!(nearest("shpere", known), Some("sphere"));
+        assert_eq!(nearest("bux", known), Some("box"));
+        assert_eq!(nearest("torus", known), None);
+    }
+}

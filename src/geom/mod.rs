@@ -1,0 +1,12 @@
+//! Rays, ranges of them, boxes and placements, all `f64`; and the one place where tolerances are set.
+
+mod aabb;
+mod interval;
+mod placement;
+mod ray;
+pub mod tolerance;
+
+pub use aabb::Aabb;
+pub use interval::Interval;
+pub use placement::Placement;
+pub use ray::Ray;

@@ -1,0 +1,34 @@
+//! Rays.
+
+use glam::{DAffine3, DVec3};
+
+/// A line with a direction: points `origin + t dir`. `dir` is not normalised, so `t` survives affine maps.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Ray {
+    /// The point at `t = 0`.
+    pub origin: DVec3,
+    /// The direction; never zero, and no component is -0.0.
+    pub dir: DVec3,
+}
+
+impl Ray {
+    /// A ray. Adding zero turns a component of -0.0 into +0.0, so that mirrored rays take the same branches.
+    pub fn new(origin: DVec3, dir: DVec3) -> Ray {
+        Ray { origin, dir: dir + DVec3::ZERO }
+    }
+
+    /// The point at `t`.
+    pub fn at(&self, t: f64) -> DVec3 {
+        self.origin + t * self.dir
+    }
+
+    /// The same ray in another frame; `t` keeps its meaning.
+    pub fn transformed(&self, to_from: &DAffine3) -> Ray {
+        Ray::new(to_from.transform_point3(self.origin), to_from.transform_vector3(self.dir))
+    }
+
+    /// Whether it can be traced: finite, with a direction.
+    pub fn is_valid(&self) -> bool {
+        self.origin.is_finite() && self.dir.is_finite() && self.dir != DVec3::ZERO
+    }
+}

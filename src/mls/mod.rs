@@ -1,0 +1,5 @@
+//! Moving least squares.
+
+/// Room for one thread's evaluations.
+#[derive(Default, Debug)]
+pub struct Scratch {}

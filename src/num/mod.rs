@@ -1,0 +1,3 @@
+//! Small numeric routines: roots, 3x3 eigenvectors, small solves, hashes.
+pub mod hash;
+pub mod roots;

@@ -1,0 +1,160 @@
+//! The description of a picture: what was written, resolved and typed. It knows names and places in the text,
+//! but no geometry and no files.
+
+mod decl;
+mod value;
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+use serde::{Deserialize, Serialize};
+
+pub use decl::{BuildError, Catalog, Decl, Group, Kind, Param};
+pub use value::{Arg, Call, Value};
+
+use crate::source::Span;
+
+/// A whole scene.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Scene {
+    /// What is drawn, in the order written.
+    pub draws: Vec<Draw>,
+    /// Cameras with their names; the first is the default. Calls of [`Group::Camera`].
+    pub cameras: Vec<Named>,
+    /// Lights. Calls of [`Group::Light`].
+    pub lights: Vec<Named>,
+    /// Materials that shapes refer to by [`MaterialId`]. Calls of [`Group::Material`].
+    pub materials: Vec<Call>,
+    /// The `render` item; `None` where the scene has none.
+    pub render: Option<Call>,
+}
+
+/// An item that may carry a name of its own.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Named {
+    /// The label, such as `sun` in `light sun(...)`.
+    pub name: Option<String>,
+    /// What it is.
+    pub call: Call,
+}
+
+/// One `draw`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Draw {
+    /// What.
+    pub shape: Shape,
+    /// The place of the expression drawn.
+    pub at: Span,
+}
+
+/// Index into [`Scene::materials`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct MaterialId(pub u32);
+
+/// A shape as a value: cheap to copy, shared where it was named once and used twice.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Shape(pub Arc<ShapeNode>);
+
+/// A node of the shape's tree and the place of the expression that made it.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct ShapeNode {
+    /// What it is.
+    pub kind: ShapeKind,
+    /// Where it was written.
+    pub at: Span,
+}
+
+/// Kinds of node.
+#[derive(Debug, Serialize, Deserialize)]
+pub enum ShapeKind {
+    /// A primitive: a call of [`Group::Primitive`].
+    Leaf {
+        /// The call, its arguments checked against the declaration.
+        call: Call,
+        /// The name of the `let` it was written in, else the word of the call.
+        name: String,
+    },
+    /// Operands combined; a complement has one, a difference its base first.
+    Boolean {
+        /// The operator.
+        op: BooleanOp,
+        /// What is combined, in the order written, lists flattened.
+        operands: Vec<Operand>,
+    },
+    /// An affine image.
+    Transform {
+        /// The map.
+        world_from_local: DAffine3,
+        /// What is mapped.
+        child: Shape,
+    },
+    /// Scaled uniformly and moved so that the middle of the bottom of its bounds lies at a point.
+    Fit {
+        /// The point, scene units.
+        at: DVec3,
+        /// What the bounds shall measure.
+        to: FitTo,
+        /// What is fitted.
+        child: Shape,
+    },
+    /// A material for every leaf below that has none, except cutters.
+    With {
+        /// The material.
+        material: MaterialId,
+        /// What wears it.
+        child: Shape,
+    },
+    /// The holes of a scan capped.
+    Close {
+        /// The widest hole to cap, scene units of the frame it is written in; `None`: any.
+        max_hole: Option<f64>,
+        /// The scan.
+        child: Shape,
+    },
+}
+
+/// A shape as an operand, with the place where it is used.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Operand {
+    /// The shape.
+    pub shape: Shape,
+    /// The place in the expression that combines it.
+    pub at: Span,
+}
+
+/// The set operators.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Serialize, Deserialize)]
+pub enum BooleanOp {
+    /// Points in any.
+    Union,
+    /// Points in all.
+    Intersection,
+    /// Points in the first and in no other.
+    Difference,
+    /// Points in an odd number.
+    Xor,
+    /// Points not in it.
+    Complement,
+}
+
+impl BooleanOp {
+    /// The infix or prefix sign of the language.
+    pub fn sign(self) -> &'static str {
+        match self {
+            BooleanOp::Union => "|",
+            BooleanOp::Intersection => "&",
+            BooleanOp::Difference => "-",
+            BooleanOp::Xor => "^",
+            BooleanOp::Complement => "!",
+        }
+    }
+}
+
+/// What `.fit` makes of the bounds.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+pub enum FitTo {
+    /// This extent along z.
+    Height(f64),
+    /// The largest extent along any axis.
+    Size(f64),
+}

@@ -1,0 +1,5 @@
+//! Cameras.
+
+/// A camera.
+#[derive(Clone, Debug)]
+pub struct Camera {}

@@ -1,0 +1,5 @@
+//! Lights.
+
+/// A light.
+#[derive(Clone, Debug)]
+pub struct Light {}

@@ -1,0 +1,5 @@
+//! Materials.
+
+/// A material.
+#[derive(Clone, Debug)]
+pub struct Material {}

@@ -1,0 +1,111 @@
+//! Solids: things that know, for every ray, each interval in which the ray is inside them. One file a
+//! primitive, one line of [`table::PRIMITIVES`] for each; scenes, materials and CSG are not known here.
+
+mod crossing;
+pub mod table;
+
+use std::fmt::Debug;
+
+use glam::{DAffine3, DVec3};
+
+pub use crossing::{Answer, Crossing};
+
+use crate::geom::{Aabb, Interval, Ray};
+
+/// What a thing's crossings mean.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Body {
+    /// It has an inside; crossings alternate between entries and exits.
+    Solid,
+    /// An open surface: crossings only, no inside.
+    Sheet,
+}
+
+/// A solid or a sheet in its own frame.
+///
+/// Methods take `&self`; what a query needs beside the answer is lent as [`Scratch`]. Rays are finite and
+/// have a direction ([`Ray::is_valid`]); their `dir` has any length.
+pub trait Solid: Send + Sync + Debug {
+    /// Whether it has an inside.
+    fn body(&self) -> Body {
+        Body::Solid
+    }
+
+    /// A box around the boundary; unbounded for unbounded solids.
+    fn bounds(&self) -> Aabb;
+
+    /// A box around the image of the solid, as tight as the solid knows.
+    fn bounds_under(&self, to_from: &DAffine3) -> Aabb {
+        self.bounds().transformed(to_from)
+    }
+
+    /// Appends the crossings of the ray's line to `out`, ascending in `t`, and says for which range they are
+    /// complete and whether the ray is inside where that range begins. The range of the answer contains the
+    /// low end of the range asked and may end early (a lazy solid stops after what it has found) or reach
+    /// beyond it; what is reported never depends on the range asked.
+    ///
+    /// A crossing at the very low end of the range is before the range, one at the high end inside it.
+    fn crossings(&self, ray: &Ray, range: Interval, scratch: &mut Scratch, out: &mut Vec<Crossing>)
+    -> Answer;
+
+    /// The outward unit normal at a crossing that [`Solid::crossings`] gave for this ray.
+    fn normal(&self, ray: &Ray, crossing: &Crossing, scratch: &mut Scratch) -> DVec3;
+
+    /// Whether asking costs much more than a closed form: such solids are asked last.
+    fn is_costly(&self) -> bool {
+        false
+    }
+}
+
+/// What queries need beside their arguments, one for each thread; it holds no answers from ray to ray.
+#[derive(Default, Debug)]
+pub struct Scratch {
+    /// Counts of work.
+    pub counts: Counts,
+    /// Room for the surface of points.
+    pub mls: crate::mls::Scratch,
+}
+
+/// Counts of work. Sums of them do not depend on the order of work.
+#[derive(Clone, Copy, Default, Debug, PartialEq, Eq)]
+pub struct Counts {
+    /// Solves of plane and polynomial, whatever for.
+    pub projections: u64,
+    /// Crossings of point set surfaces found.
+    pub crossings: u64,
+    /// Cells of a ray that the curvature certificate could not decide.
+    pub certificate_failures: u64,
+    /// Gaps whose ends disagreed and were mended by a cap.
+    pub parity_repairs: u64,
+    /// Chords with an odd number of roots before caps and repairs, or a gap whose ends disagree.
+    pub odd_chords: u64,
+    /// Crossings of caps.
+    pub caps: u64,
+    /// Crossings answered by a patch alone.
+    pub patch_hits: u64,
+    /// Questions to leaves.
+    pub leaf_queries: u64,
+    /// Leaves whose box a ray met and that were never asked.
+    pub leaves_skipped: u64,
+    /// Groups of several crossings at one `t`.
+    pub ties: u64,
+    /// Spans dropped and gaps filled by the clean-up.
+    pub cleaned: u64,
+}
+
+impl Counts {
+    /// Adds another thread's counts.
+    pub fn add(&mut self, o: &Counts) {
+        self.projections += o.projections;
+        self.crossings += o.crossings;
+        self.certificate_failures += o.certificate_failures;
+        self.parity_repairs += o.parity_repairs;
+        self.odd_chords += o.odd_chords;
+        self.caps += o.caps;
+        self.patch_hits += o.patch_hits;
+        self.leaf_queries += o.leaf_queries;
+        self.leaves_skipped += o.leaves_skipped;
+        self.ties += o.ties;
+        self.cleaned += o.cleaned;
+    }
+}
