@@ -1,3 +1,6 @@
-//! Small numeric routines: roots, 3x3 eigenvectors, small solves, hashes.
+//! Small numeric routines: roots, 3x3 eigenvectors, small solves, hashes, lanes.
+pub mod cholesky;
+pub mod eigen;
 pub mod hash;
+pub mod lanes;
 pub mod roots;

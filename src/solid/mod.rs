@@ -62,8 +62,6 @@ pub trait Solid: Send + Sync + Debug {
 pub struct Scratch {
     /// Counts of work.
     pub counts: Counts,
-    /// Room for the surface of points.
-    pub mls: crate::mls::Scratch,
 }
 
 /// Counts of work. Sums of them do not depend on the order of work.

@@ -1,0 +1,178 @@
+//! The polynomial over the plane: weighted least squares in the frame (e1, e2, n) at q.
+//!
+//! Minimises sum w_i (z_i - sum c_ab u^a v^b)^2 over a + b <= degree by the normal equations, whose matrix holds
+//! the moments sum w u^a v^b. In units of the local width its condition is at most some hundreds (degree 4, one
+//! spacing), so Cholesky is exact enough; a polynomial that the samples do not determine is replaced by one of
+//! lower degree, which is reported.
+
+use super::MAX_DEGREE;
+use super::neighbours::Neighbours;
+use super::plane::Plane;
+use super::{Stray, Weight};
+use crate::num::cholesky::Cholesky;
+use crate::num::lanes::F4;
+use glam::DVec3;
+
+/// Coefficients of a polynomial of degree 4.
+pub(super) const MAX_COEFFICIENTS: usize = 15;
+const MAX_MOMENTS: usize = 45;
+
+/// How many coefficients a degree has.
+pub(super) const fn coefficients(degree: usize) -> usize {
+    (degree + 1) * (degree + 2) / 2
+}
+
+/// The place of u^a v^b: all of a lower total degree first.
+pub(super) const fn index(a: usize, b: usize) -> usize {
+    let d = a + b;
+    d * (d + 1) / 2 + b
+}
+
+/// A fitted polynomial with what its derivatives need.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fit {
+    /// The degree that the samples determine, at most the one asked.
+    pub degree: usize,
+    /// The coefficients c, local units.
+    pub c: [f64; MAX_COEFFICIENTS],
+    /// The first column of the inverse of the normal matrix: a0 . beta(u, v) is the shape function of a sample.
+    pub a0: [f64; MAX_COEFFICIENTS],
+    /// Mean of the samples in the plane, weighted, from q: it leaves zero at an open edge.
+    pub drift: [f64; 2],
+    /// Sum over the samples of weight times outward normal along n, over the sum of the weights.
+    pub vote: f64,
+}
+
+/// Fits at a settled plane.
+pub(super) fn fit(
+    weight: impl Weight,
+    near: &Neighbours,
+    r: DVec3,
+    plane: &Plane,
+    basis: [DVec3; 2],
+    degree: usize,
+) -> Result<Fit, Stray> {
+    let sums = match degree {
+        0 => sums::<0>(weight, near, r, plane, basis),
+        1 => sums::<1>(weight, near, r, plane, basis),
+        2 => sums::<2>(weight, near, r, plane, basis),
+        3 => sums::<3>(weight, near, r, plane, basis),
+        _ => sums::<MAX_DEGREE>(weight, near, r, plane, basis),
+    };
+    let total = sums.moments[0];
+    // A fit needs this many effective samples per coefficient, (sum w)^2 / sum w^2 being their number.
+    const SAMPLES_PER_COEFFICIENT: f64 = 1.5;
+    // Pivots below this share of their diagonal say that the samples do not determine the coefficient.
+    const PIVOT: f64 = 1e-10;
+    let effective = total * total / sums.squared;
+    for degree in (0..=degree.min(MAX_DEGREE)).rev() {
+        let n = coefficients(degree);
+        if 0 < degree && effective < SAMPLES_PER_COEFFICIENT * n as f64 {
+            continue;
+        }
+        let mut a = [[0.0; MAX_COEFFICIENTS]; MAX_COEFFICIENTS];
+        for (i, (ia, ib)) in exponents(degree).enumerate() {
+            for (j, (ja, jb)) in exponents(degree).enumerate().take(i + 1) {
+                a[i][j] = sums.moments[index(ia + ja, ib + jb)];
+            }
+        }
+        if let Some(factor) = Cholesky::new(&a, n, PIVOT) {
+            let mut unit = [0.0; MAX_COEFFICIENTS];
+            unit[0] = 1.0;
+            return Ok(Fit {
+                degree,
+                c: factor.solve(&sums.heights),
+                a0: factor.solve(&unit),
+                drift: sums.drift.map(|d| d / total),
+                vote: sums.vote / total,
+            });
+        }
+    }
+    Err(Stray::IllConditioned)
+}
+
+/// The exponents of u and v in the order of [`index`].
+fn exponents(degree: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..=degree).flat_map(|d| (0..=d).map(move |b| (d - b, b)))
+}
+
+struct Sums {
+    moments: [f64; MAX_MOMENTS],
+    heights: [f64; MAX_COEFFICIENTS],
+    drift: [f64; 2],
+    squared: f64,
+    vote: f64,
+}
+
+#[inline(always)]
+fn sums<const D: usize>(
+    weight: impl Weight,
+    near: &Neighbours,
+    r: DVec3,
+    plane: &Plane,
+    [e1, e2]: [DVec3; 2],
+) -> Sums {
+    let Plane { n, t } = *plane;
+    let mut moments = [F4::ZERO; MAX_MOMENTS];
+    let mut heights = [F4::ZERO; MAX_COEFFICIENTS];
+    let (mut squared, mut vote, mut du, mut dv) = (F4::ZERO, F4::ZERO, F4::ZERO, F4::ZERO);
+    for (p, outward, ih2) in near.blocks() {
+        let d = p.minus(r);
+        let (u, v, z) = (d.dot(e1), d.dot(e2), d.dot(n) - t);
+        let w = weight.value((u * u + v * v + z * z) * ih2);
+        squared += w * w;
+        vote += w * outward.dot(n);
+        du += w * u;
+        dv += w * v;
+        // w u^a v^b, row by row: powers of u grow along a, powers of v along b.
+        let mut row = w;
+        let mut row_z = w * z;
+        for b in 0..=2 * D {
+            let (mut m, mut mz) = (row, row_z);
+            for a in 0..=2 * D - b {
+                moments[index(a, b)] += m;
+                m = m * u;
+                if a + b <= D {
+                    heights[index(a, b)] += mz;
+                    mz = mz * u;
+                }
+            }
+            row = row * v;
+            row_z = row_z * v;
+        }
+    }
+    Sums {
+        moments: moments.map(F4::sum),
+        heights: heights.map(F4::sum),
+        drift: [du.sum(), dv.sum()],
+        squared: squared.sum(),
+        vote: vote.sum(),
+    }
+}
+
+/// Values and derivatives along u and v of two polynomials of one degree at four places.
+#[inline(always)]
+pub(super) fn evaluate<const D: usize>(
+    p: &[f64; MAX_COEFFICIENTS],
+    q: &[f64; MAX_COEFFICIENTS],
+    u: F4,
+    v: F4,
+) -> [[F4; 3]; 2] {
+    let mut out = [[F4::ZERO; 3]; 2];
+    // Horner's rule in v over Horner's rules in u.
+    for b in (0..=D).rev() {
+        let mut inner = [[F4::ZERO; 2]; 2];
+        for a in (0..=D - b).rev() {
+            for (row, c) in inner.iter_mut().zip([p, q]) {
+                row[1] = row[1] * u + row[0];
+                row[0] = row[0] * u + c[index(a, b)];
+            }
+        }
+        for (o, i) in out.iter_mut().zip(inner) {
+            o[2] = o[2] * v + o[0];
+            o[0] = o[0] * v + i[0];
+            o[1] = o[1] * v + i[1];
+        }
+    }
+    out
+}

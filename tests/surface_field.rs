@@ -1,0 +1,57 @@
+//! F and grad F against finite differences and closed forms.
+
+mod common;
+
+use common::Truth;
+use glam::DVec3;
+use pss::mls::{Compact, Evaluator, Gaussian, Neighbours, Sample, Stray, Weight};
+use pss::num::hash::Stream;
+
+/// All samples, no tree, no cut.
+fn brute(points: &[DVec3], normals: &[DVec3], h: impl Fn(DVec3) -> f64, unit: f64) -> Neighbours {
+    let mut near = Neighbours::default();
+    near.reset(DVec3::ZERO, unit, f64::INFINITY);
+    for (p, n) in points.iter().zip(normals) {
+        near.push(*p, *n, h(*p));
+    }
+    near.finish();
+    near
+}
+
+fn probes(truth: Truth, count: usize, within: f64) -> Vec<DVec3> {
+    let (points, normals) = truth.cloud(40_000);
+    let mut stream = Stream::new(7);
+    (0..count)
+        .map(|_| {
+            let i = (stream.unit() * points.len() as f64) as usize;
+            points[i] + normals[i] * within * (2.0 * stream.unit() - 1.0)
+        })
+        .collect()
+}
+
+fn check_gradient<W: Weight>(weight: W, degree: usize) {
+    let (points, normals) = Truth::Torus.cloud(3000);
+    let h = 2.0 * (4.0 * 0.4 * std::f64::consts::PI.powi(2) / 3000.0).sqrt();
+    // Widths that differ from sample to sample: the derivative must use each sample's own.
+    let near = brute(&points, &normals, |p| h * (1.0 + 0.2 * p.x), h);
+    let evaluator = Evaluator { weight, degree };
+    let mut short = Neighbours::default();
+    let mut at = |p: DVec3| -> Result<Sample, Stray> { evaluator.sample(&near, p, &mut short) };
+    for p in probes(Truth::Torus, 200, 0.5 * h) {
+        let sample = at(p).unwrap();
+        let d = 1e-4 * h;
+        let difference: DVec3 = DVec3::AXES
+            .map(|e| (at(p + d * e).unwrap().value - at(p - d * e).unwrap().value) / (2.0 * d))
+            .into();
+        let error = (difference - sample.gradient).length();
+        assert!(error < 1e-6, "degree {degree} at {p}: {error:e}");
+    }
+}
+
+#[test]
+fn the_gradient_agrees_with_differences_for_every_weight_and_degree() {
+    for degree in 0..=4 {
+        check_gradient(Compact, degree);
+        check_gradient(Gaussian::for_tolerance(1e-12), degree);
+    }
+}
