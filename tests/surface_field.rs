@@ -36,7 +36,7 @@ fn check_gradient<W: Weight>(weight: W, degree: usize) {
     let near = brute(&points, &normals, |p| h * (1.0 + 0.2 * p.x), h);
     let evaluator = Evaluator { weight, degree };
     let mut short = Neighbours::default();
-    let mut at = |p: DVec3| -> Result<Sample, Stray> { evaluator.sample(&near, p, &mut short) };
+    let mut at = |p: DVec3| -> Result<Sample, Stray> { evaluator.sample(&near, p, h, &mut short) };
     for p in probes(Truth::Torus, 200, 0.5 * h) {
         let sample = at(p).unwrap();
         let d = 1e-4 * h;

@@ -74,12 +74,20 @@ const VOTE: f64 = 0.1;
 
 impl<W: Weight> Evaluator<W> {
     /// F and its gradient at a world point. `near` must hold all samples whose support reaches the ball of
-    /// [`Neighbours::reach`] about its origin; `short` is room for those that weigh at q.
+    /// [`Neighbours::reach`] about its origin; `width` is the local width at the point, world length, which bounds
+    /// the tube; `short` is room for the samples that weigh at q.
     ///
     /// Deterministic: the search starts from the samples' own normals about `at`, so the branch of the local
     /// minimum depends on the point alone.
-    pub fn sample(&self, near: &Neighbours, at: DVec3, short: &mut Neighbours) -> Result<Sample, Stray> {
+    pub fn sample(
+        &self,
+        near: &Neighbours,
+        at: DVec3,
+        width: f64,
+        short: &mut Neighbours,
+    ) -> Result<Sample, Stray> {
         let r = (at - near.origin) / near.unit;
+        let k = width / near.unit;
         if near.reach < r.length() {
             return Err(Stray::OutOfReach);
         }
@@ -87,33 +95,35 @@ impl<W: Weight> Evaluator<W> {
         let support = self.weight.support();
         // Twice suffices where the start was good; a search that keeps roaming has no minimum to settle in.
         for _ in 0..4 {
-            if TUBE + ROAM < plane.t.abs() {
+            if (TUBE + ROAM) * k < plane.t.abs() {
                 return Err(Stray::Outside);
             }
             let q = r + plane.t * plane.n;
-            if near.reach < q.length() + ROAM {
+            if near.reach < q.length() + ROAM * k {
                 return Err(Stray::OutOfReach);
             }
-            near.near(q, ROAM, support, short);
+            near.near(q, ROAM * k, support, short);
             let (found, jet) = settle(self.weight, short, r, plane)?;
-            if (r + found.t * found.n - q).length() <= ROAM {
-                return self.finish(short, r, &found, &jet.basis, &jet.hessian);
+            if (r + found.t * found.n - q).length() <= ROAM * k {
+                return self.finish(short, r, k, &found, &jet.basis, &jet.hessian);
             }
             plane = found;
         }
         Err(Stray::Unsettled)
     }
 
-    /// Polynomial, orientation and gradient at a settled plane.
+    /// Polynomial, orientation and gradient at a settled plane; `k` is the width at the point, local units.
+    #[allow(clippy::too_many_arguments)] // One value each; a struct for one call would only rename them.
     fn finish(
         &self,
         near: &Neighbours,
         r: DVec3,
+        k: f64,
         plane: &Plane,
         basis: &[DVec3; 2],
         hessian: &[[f64; 3]; 3],
     ) -> Result<Sample, Stray> {
-        if TUBE < plane.t.abs() {
+        if TUBE * k < plane.t.abs() {
             return Err(Stray::Outside);
         }
         let n = plane.n;
@@ -121,7 +131,7 @@ impl<W: Weight> Evaluator<W> {
         let basis = [e1, n.cross(e1) * n.cross(e1).dot(basis[1]).signum()];
         let fit = fit(self.weight, near, r, plane, basis, self.degree.min(MAX_DEGREE))?;
         let steep = if fit.degree == 0 { 0.0 } else { fit.c[1].hypot(fit.c[2]) };
-        if HIGHEST < fit.c[0].abs() || STEEPEST < steep {
+        if HIGHEST * k < fit.c[0].abs() || STEEPEST < steep {
             return Err(Stray::Outside);
         }
         if fit.vote.abs() < VOTE {
@@ -134,7 +144,7 @@ impl<W: Weight> Evaluator<W> {
             value: sign * (plane.t + fit.c[0]) * near.unit,
             gradient: sign * inward,
             plane_normal: -sign * n,
-            drift: fit.drift[0].hypot(fit.drift[1]),
+            drift: fit.drift[0].hypot(fit.drift[1]) / k,
             degree: fit.degree,
         })
     }

@@ -1,7 +1,14 @@
 //! Solids: things that know, for every ray, each interval in which the ray is inside them. One file a
 //! primitive, one line of [`table::PRIMITIVES`] for each; scenes, materials and CSG are not known here.
 
+pub mod block;
 mod crossing;
+pub mod cylinder;
+pub mod half_space;
+pub mod plane;
+pub mod point_set;
+pub mod points;
+pub mod sphere;
 pub mod table;
 
 use std::fmt::Debug;
@@ -34,8 +41,9 @@ pub trait Solid: Send + Sync + Debug {
     /// A box around the boundary; unbounded for unbounded solids.
     fn bounds(&self) -> Aabb;
 
-    /// A box around the image of the solid, as tight as the solid knows.
-    fn bounds_under(&self, to_from: &DAffine3) -> Aabb {
+    /// A box around the image of the solid, as tight as the solid knows: what `bounds` and `.fit` of the language
+    /// mean. For a scan that of its samples.
+    fn extent_under(&self, to_from: &DAffine3) -> Aabb {
         self.bounds().transformed(to_from)
     }
 
@@ -62,6 +70,8 @@ pub trait Solid: Send + Sync + Debug {
 pub struct Scratch {
     /// Counts of work.
     pub counts: Counts,
+    /// What is known of the line being asked about, for each point set surface.
+    pub lines: Vec<point_set::LineScratch>,
 }
 
 /// Counts of work. Sums of them do not depend on the order of work.

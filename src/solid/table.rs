@@ -1,9 +1,45 @@
 //! The table of primitives: the language, the help and the conformance tests read it. A new primitive is its
 //! file and one line here.
 
-use crate::scene::Decl;
+use std::sync::Arc;
+
+use super::{Solid, block, cylinder, half_space, plane, points, sphere};
+use crate::scene::{BuildError, Call, Decl};
+
+/// How a primitive is made.
+#[derive(Clone, Copy, Debug)]
+pub enum Build {
+    /// From the arguments alone.
+    Exact(fn(&Call) -> Result<Arc<dyn Solid>, BuildError>),
+    /// From the samples of a file or of another solid: whoever prepares the scene fetches those.
+    Points,
+}
+
+/// A primitive: what the language may write and how it is made.
+#[derive(Clone, Copy, Debug)]
+pub struct Primitive {
+    /// Its declaration.
+    pub decl: Decl,
+    /// Its maker.
+    pub build: Build,
+}
+
+/// All primitives.
+pub static PRIMITIVES: &[Primitive] = &[
+    block::PRIMITIVE,
+    sphere::PRIMITIVE,
+    cylinder::PRIMITIVE,
+    half_space::PRIMITIVE,
+    plane::PRIMITIVE,
+    points::PRIMITIVE,
+];
 
 /// The declarations of all primitives.
 pub fn decls() -> impl Iterator<Item = Decl> {
-    std::iter::empty()
+    PRIMITIVES.iter().map(|p| p.decl)
+}
+
+/// The primitive with this word.
+pub fn find(word: &str) -> Option<&'static Primitive> {
+    PRIMITIVES.iter().find(|p| p.decl.word == word)
 }

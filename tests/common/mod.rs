@@ -85,3 +85,23 @@ impl Truth {
             .unzip()
     }
 }
+
+/// A surface through samples, with the automatic widths.
+pub fn surface(
+    points: &[DVec3],
+    normals: &[DVec3],
+    options: &pss::solid::point_set::Options,
+) -> pss::solid::point_set::PointSet {
+    use pss::cloud::{neighbours::Neighbours, spacing};
+    let table = Neighbours::new(points).table(6);
+    let spacing = spacing::spacing(points, &table);
+    let widths = spacing::widths(&spacing, &table);
+    pss::solid::point_set::PointSet::new(points, normals, &widths, options)
+}
+
+/// The `i`-th random chord of a sphere.
+pub fn chord(i: u64, center: DVec3, radius: f64) -> pss::geom::Ray {
+    let mut stream = pss::num::hash::Stream::new(i ^ 0x5eed);
+    let (a, b): (DVec3, DVec3) = (stream.direction(), stream.direction());
+    pss::geom::Ray::new(center + radius * a, radius * (b - a))
+}

@@ -1,0 +1,49 @@
+//! Whether points can carry a surface at all: not all equal, not all on a line, of a size that can be squared.
+
+use glam::DVec3;
+
+use super::CloudError;
+use crate::geom::Aabb;
+
+/// Clouds wider than this are refused: it is no length of this world (the observable universe has 1e27 m),
+/// and its square, cube and fourth power, which the plane fit needs, stay finite below it.
+const WIDEST: f64 = 1e30;
+
+/// Points nearer to one line than this share of its length are on the line: a surface of that shape would
+/// need 1e6 samples along its length for one across.
+const LINE: f64 = 1e-6;
+
+/// Rounding of coordinates stored as `f32`, relative to the coordinate (half of 2^-23, two of them).
+const SINGLE: f64 = 1.2e-7;
+
+/// Fails where the points have no surface: none at all, all equal, or all on a line.
+pub fn check_extent(points: &[DVec3]) -> Result<(), CloudError> {
+    let Some(&first) = points.first() else {
+        return Err(CloudError::bad("no points").help("export the cloud again with its vertices"));
+    };
+    let bounds = Aabb::of_points(points.iter().copied());
+    let diagonal = bounds.diagonal();
+    if diagonal.is_nan() || WIDEST < diagonal {
+        return Err(CloudError::bad(format!("the points span more than {WIDEST:e}"))
+            .help("wrong byte order? compare the `format` line with the program that wrote the file"));
+    }
+    let farthest = |from: DVec3| {
+        let far = |a: DVec3, b: DVec3| if from.distance(a) < from.distance(b) { b } else { a };
+        points.iter().copied().fold(from, far)
+    };
+    let a = farthest(first);
+    let b = farthest(a);
+    let length = a.distance(b);
+    if length == 0.0 {
+        return Err(CloudError::bad("no surface: all points are equal")
+            .help("the cloud needs points in two directions"));
+    }
+    let along = (b - a) / length;
+    let slack = LINE * length + SINGLE * bounds.min.abs().max(bounds.max.abs()).max_element();
+    let off_line = |p: &DVec3| slack < ((*p - a) - along * (*p - a).dot(along)).length();
+    if !points.iter().any(off_line) {
+        return Err(CloudError::bad("no surface: all points are on a line")
+            .help("the cloud needs points in two directions"));
+    }
+    Ok(())
+}

@@ -1,0 +1,47 @@
+//! The PLY reader: ASCII and binary of both byte orders, any element, any property, streamed so that memory
+//! stays near that of the result. An own reader, since a stray `nan` row must be dropped, not end the file,
+//! and no count of a header may be believed before it is compared with the length of the file.
+
+mod columns;
+mod header;
+mod input;
+mod vertices;
+
+use std::fs::{File, Metadata};
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use super::{Cloud, CloudError, check_extent};
+
+/// Reads a PLY file. Only regular files: a pipe or a device could hold up the program for ever.
+pub fn read_path(path: &Path) -> Result<Cloud, CloudError> {
+    let metadata = std::fs::metadata(path).map_err(|e| CloudError::missing(format!("cannot open: {e}")))?;
+    regular(&metadata)?;
+    let file = File::open(path).map_err(|e| CloudError::missing(format!("cannot open: {e}")))?;
+    // Asked again of what was opened: the name may have changed hands.
+    let metadata = file.metadata()?;
+    regular(&metadata)?;
+    read_from(BufReader::with_capacity(1 << 16, file), metadata.len())
+}
+
+/// Reads a PLY file that is in memory.
+pub fn read(bytes: &[u8]) -> Result<Cloud, CloudError> {
+    read_from(bytes, bytes.len() as u64)
+}
+
+/// Reads a PLY file of `length` bytes from a stream.
+pub fn read_from(stream: impl BufRead, length: u64) -> Result<Cloud, CloudError> {
+    let mut input = input::Input::new(stream, length);
+    let header = header::read(&mut input)?;
+    let cloud = vertices::read(&mut input, &header)?;
+    check_extent(&cloud.points)?;
+    Ok(cloud)
+}
+
+fn regular(metadata: &Metadata) -> Result<(), CloudError> {
+    if metadata.is_file() {
+        return Ok(());
+    }
+    let what = if metadata.is_dir() { "a directory" } else { "no regular file" };
+    Err(CloudError::missing(format!("this is {what}")).help("name a PLY file"))
+}

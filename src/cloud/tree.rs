@@ -1,0 +1,83 @@
+//! A k-d tree over points, in the order of its traversal, for neighbours and for the winding number.
+
+use glam::DVec3;
+
+use crate::geom::Aabb;
+
+/// A box of points. The nodes of a subtree follow its root: the first child is the next node, the second
+/// begins where the first is skipped.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    /// Around the points, tight.
+    pub bounds: Aabb,
+    /// The first point of the node, in the order of the tree.
+    pub start: u32,
+    /// One after the last point.
+    pub end: u32,
+    /// The first node that is not of this subtree.
+    pub skip: u32,
+}
+
+/// The nodes, and the points' order.
+#[derive(Clone, Debug)]
+pub struct Tree {
+    /// In the order of traversal, the root first; none without points.
+    pub nodes: Vec<Node>,
+    /// For each place in the tree, the index of the point that stands there.
+    pub order: Vec<u32>,
+}
+
+impl Tree {
+    /// Splits at the median of the widest side until at most `leaf` points are left, or all are equal. Points
+    /// of equal coordinates are told apart by index, so the tree is a function of the points' order alone.
+    pub fn new(points: &[DVec3], leaf: usize) -> Tree {
+        let mut tree = Tree { nodes: Vec::new(), order: (0..points.len() as u32).collect() };
+        // Halving: at most 2^32 points make a stack of 33.
+        let mut open: Vec<(usize, usize)> = Vec::new();
+        if !points.is_empty() {
+            open.push((0, points.len()));
+        }
+        while let Some((start, end)) = open.pop() {
+            let part = &mut tree.order[start..end];
+            let bounds = Aabb::of_points(part.iter().map(|&i| points[i as usize]));
+            tree.nodes.push(Node { bounds, start: start as u32, end: end as u32, skip: 0 });
+            let size = bounds.size();
+            if part.len() <= leaf || size.max_element() == 0.0 {
+                continue;
+            }
+            let axis = size.max_position();
+            let half = part.len() / 2;
+            part.select_nth_unstable_by(half, |&i, &j| {
+                let (a, b) = (points[i as usize][axis], points[j as usize][axis]);
+                a.total_cmp(&b).then(i.cmp(&j))
+            });
+            open.push((start + half, end));
+            open.push((start, start + half));
+        }
+        tree.link();
+        tree
+    }
+
+    /// Sets `skip`: the next node that begins at or after the end of this one.
+    fn link(&mut self) {
+        let mut next_at = Vec::new();
+        for at in (0..self.nodes.len()).rev() {
+            // Starts of later nodes, the nearest last; those inside this node's subtree are done.
+            while next_at.last().is_some_and(|&later: &usize| self.nodes[later].start < self.nodes[at].end) {
+                next_at.pop();
+            }
+            self.nodes[at].skip = next_at.last().map_or(self.nodes.len(), |&later| later) as u32;
+            next_at.push(at);
+        }
+    }
+
+    /// Whether a node has no children.
+    pub fn is_leaf(&self, node: usize) -> bool {
+        self.nodes[node].skip as usize == node + 1
+    }
+
+    /// The children of a node that is no leaf.
+    pub fn children(&self, node: usize) -> [usize; 2] {
+        [node + 1, self.nodes[node + 1].skip as usize]
+    }
+}

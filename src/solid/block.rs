@@ -1,0 +1,96 @@
+//! Boxes.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::table::{Build, Primitive};
+use super::{Answer, Crossing, Scratch, Solid};
+use crate::geom::{Aabb, Interval, Ray};
+use crate::scene::{BuildError, Call, Decl, Group, Kind, Param, Value};
+
+/// The line of the table.
+pub const PRIMITIVE: Primitive = Primitive {
+    decl: Decl {
+        word: "box",
+        group: Group::Primitive,
+        doc: "A box with its sides along the axes: two corners in any order, or a size about a centre.",
+        params: &[
+            Param::placed("a", Kind::Vector(3), "a corner"),
+            Param::placed("b", Kind::Vector(3), "the opposite corner"),
+            Param::named("size", Kind::SizeOrVector, "edge lengths, or one for all"),
+            Param::named("at", Kind::Vector(3), "centre, with size (default the origin)"),
+        ],
+        example: "box([0, 0, 0], [1, 1, 1])",
+    },
+    build: Build::Exact(build),
+};
+
+fn build(call: &Call) -> Result<Arc<dyn Solid>, BuildError> {
+    let corners = (call.vec3("a"), call.vec3("b"));
+    let size = match call.get("size") {
+        Some(Value::Vector(v)) if v.len() == 3 => Some(DVec3::new(v[0], v[1], v[2])),
+        Some(Value::Number(s)) => Some(DVec3::splat(*s)),
+        _ => None,
+    };
+    let center = call.vec3("at").unwrap_or(DVec3::ZERO);
+    let wrong = |param, message: &str| {
+        let help = "write `box([0, 0, 0], [1, 1, 1])` or `box(size: [1, 1, 1], at: [0, 0, 0])`";
+        Err(BuildError { param, message: message.into(), help: help.into() })
+    };
+    match (corners, size) {
+        ((Some(a), Some(b)), None) if call.get("at").is_none() => {
+            Ok(Arc::new(Block(Aabb { min: a.min(b), max: a.max(b) })))
+        }
+        ((None, None), Some(size)) => {
+            Ok(Arc::new(Block(Aabb { min: center - 0.5 * size, max: center + 0.5 * size })))
+        }
+        ((Some(_), Some(_)), None) => wrong("at", "`at` goes with `size`, not with two corners"),
+        (_, Some(_)) => wrong("size", "a box has either two corners or a size"),
+        ((Some(_), None) | (None, Some(_)), None) => wrong("a", "a box needs two corners"),
+        ((None, None), None) => wrong("", "a box needs two corners or a size"),
+    }
+}
+
+/// The points of a box. A ray that runs in a face is inside iff the face is the low one.
+#[derive(Clone, Copy, Debug)]
+pub struct Block(pub Aabb);
+
+impl Solid for Block {
+    fn bounds(&self) -> Aabb {
+        self.0
+    }
+
+    fn crossings(&self, ray: &Ray, _: Interval, _: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
+        let (mut enter, mut exit) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
+        for axis in 0..3 {
+            let (o, d) = (ray.origin[axis], ray.dir[axis]);
+            let (lo, hi) = (self.0.min[axis], self.0.max[axis]);
+            if d == 0.0 {
+                if o < lo || hi <= o {
+                    return Answer::whole_line(false);
+                }
+                continue;
+            }
+            let (near, far) = if 0.0 < d { (lo, hi) } else { (hi, lo) };
+            let part = 2 * axis as u32 + u32::from(d < 0.0);
+            let (t0, t1) = ((near - o) / d, (far - o) / d);
+            if enter.0 < t0 {
+                enter = (t0, part);
+            }
+            if t1 < exit.0 {
+                exit = (t1, part ^ 1);
+            }
+        }
+        if enter.0 < exit.0 {
+            out.push(Crossing::exact(enter.0, true, enter.1));
+            out.push(Crossing::exact(exit.0, false, exit.1));
+        }
+        Answer::whole_line(false)
+    }
+
+    fn normal(&self, _: &Ray, crossing: &Crossing, _: &mut Scratch) -> DVec3 {
+        let axis = DVec3::AXES[(crossing.part / 2) as usize];
+        if crossing.part.is_multiple_of(2) { -axis } else { axis }
+    }
+}

@@ -1,0 +1,176 @@
+//! The surface of points as a solid: every crossing of a ray, straight from the samples.
+//!
+//! [`hierarchy`] gives the trust spheres on a line; overlapping ones merge into bands; [`roots`] isolates every root
+//! of F in a band; [`line`] strings bands and gaps together to states; [`caps`] closes holes by the winding number.
+
+mod caps;
+mod hierarchy;
+mod line;
+mod probe;
+mod roots;
+mod solidity;
+
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::{DAffine3, DVec3};
+
+pub use caps::Closure;
+pub use hierarchy::{Hierarchy, Reach};
+pub use line::LineScratch;
+pub use solidity::Solidity;
+
+use crate::cloud::neighbours::Neighbours;
+use crate::cloud::winding::Winding;
+use crate::cloud::{AREA_NEIGHBOURS, areas};
+use crate::geom::{Aabb, Interval, Ray, tolerance};
+use crate::mls::{Compact, Gaussian};
+use crate::solid::{Answer, Body, Crossing, Scratch, Solid};
+
+/// Which weight.
+#[derive(Clone, Copy, Debug)]
+pub enum Kernel {
+    /// (1 - rho/8)^8.
+    Compact(Compact),
+    /// exp(-rho).
+    Gaussian(Gaussian),
+}
+
+impl Kernel {
+    /// How far the weighted mean of a sampled half-plane lies from its straight edge, in widths, for a point on
+    /// the edge: past it the samples have ended. Both follow from the moments of the weight; for the Gaussian
+    /// 1/sqrt(pi).
+    fn edge(self) -> f64 {
+        match self {
+            Kernel::Compact(_) => 0.511,
+            Kernel::Gaussian(_) => 0.564,
+        }
+    }
+}
+
+/// How a point set surface is made from samples.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// "gaussian" or "compact".
+    pub gaussian: bool,
+    /// Degree of the polynomial, 0 to 4.
+    pub degree: usize,
+    /// Relative to the diagonal of the samples.
+    pub tolerance: f64,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options { gaussian: false, degree: 2, tolerance: tolerance::POINTS }
+    }
+}
+
+/// A point set surface.
+#[derive(Debug)]
+pub struct PointSet {
+    /// Tells the lines of different surfaces apart in a thread's scratch; no result depends on it.
+    id: u64,
+    samples: Hierarchy,
+    kernel: Kernel,
+    degree: usize,
+    /// A bound of the error along the normal, world length.
+    tolerance: f64,
+    bounds: Aabb,
+    body: Body,
+    closure: Option<Closure>,
+    winding: OnceLock<Winding>,
+}
+
+impl PointSet {
+    /// Builds the surface as a [`Body::Sheet`]; see [`PointSet::measure`] and [`PointSet::closed`].
+    /// Normals are outward and of unit length, widths world lengths; one of each a point.
+    pub fn new(points: &[DVec3], normals: &[DVec3], widths: &[f64], options: &Options) -> PointSet {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        let bounds = Aabb::of_points(points.iter().copied());
+        let diagonal = bounds.diagonal();
+        let hierarchy = Hierarchy::new(points, normals, widths);
+        let kernel = if options.gaussian {
+            // In widths of the narrowest sample, for which the tolerance is loosest in its own terms.
+            let widest = widths.iter().copied().fold(0.0, f64::max);
+            Kernel::Gaussian(Gaussian::for_tolerance(options.tolerance * diagonal / widest))
+        } else {
+            Kernel::Compact(Compact)
+        };
+        PointSet {
+            id: NEXT.fetch_add(1, Ordering::Relaxed),
+            samples: hierarchy,
+            kernel,
+            degree: options.degree,
+            tolerance: options.tolerance * diagonal,
+            bounds,
+            body: Body::Sheet,
+            closure: None,
+            winding: OnceLock::new(),
+        }
+    }
+
+    /// The same surface with a stated body.
+    pub fn with_body(mut self, body: Body) -> PointSet {
+        self.body = body;
+        self
+    }
+
+    /// The samples, in the order of the hierarchy.
+    pub fn samples(&self) -> &Hierarchy {
+        &self.samples
+    }
+
+    /// A bound of the error of a crossing along the normal, world length.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// The winding number of the samples, built when first asked.
+    fn winding(&self) -> &Winding {
+        self.winding.get_or_init(|| {
+            let Hierarchy { points, normals, widths, .. } = &self.samples;
+            let table = Neighbours::new(points).table(AREA_NEIGHBOURS);
+            // At a rim a sample stands for no more than a disc of half its width.
+            let reach: Vec<f64> = widths.iter().map(|h| 0.5 * h).collect();
+            let areas = areas(points, normals, &reach, &table);
+            Winding::new(points, normals, &areas, Winding::OPENING)
+        })
+    }
+
+    /// Whether the samples about this one may end: only there does the surface end with them.
+    fn near_rim(&self, sample: usize) -> bool {
+        self.closure.as_ref().is_some_and(|c| c.rim[sample])
+    }
+}
+
+impl Solid for PointSet {
+    fn body(&self) -> Body {
+        self.body
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.samples.reach()
+    }
+
+    fn extent_under(&self, to_from: &DAffine3) -> Aabb {
+        Aabb::of_points(self.samples.points.iter().map(|p| to_from.transform_point3(*p)))
+    }
+
+    fn crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        scratch: &mut Scratch,
+        out: &mut Vec<Crossing>,
+    ) -> Answer {
+        self.line_crossings(ray, range, scratch, out)
+    }
+
+    fn normal(&self, ray: &Ray, crossing: &Crossing, scratch: &mut Scratch) -> DVec3 {
+        self.line_normal(ray, crossing, scratch)
+    }
+
+    fn is_costly(&self) -> bool {
+        true
+    }
+}

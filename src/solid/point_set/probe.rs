@@ -1,0 +1,131 @@
+//! F along a line: what the search for roots asks at one place of it.
+
+use glam::DVec3;
+
+use super::hierarchy::{Hierarchy, Reach};
+use super::{Kernel, PointSet};
+use crate::geom::Ray;
+use crate::mls::{Evaluator, Neighbours, Sample, Stray, Weight};
+
+/// F at a place of a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Probe {
+    /// Arc length from the line's origin.
+    pub s: f64,
+    /// The width that scales things here: that of the nearest sample, in its own widths.
+    pub width: f64,
+    /// F and dF/ds; `None` where F is undefined or the samples have ended.
+    pub f: Option<[f64; 2]>,
+    /// Whether it is undefined because the projection failed.
+    pub stray: bool,
+}
+
+/// Room for evaluations.
+#[derive(Debug, Default)]
+pub(super) struct Room {
+    near: Neighbours,
+    short: Neighbours,
+    ready: bool,
+    /// Solves of plane and polynomial.
+    pub projections: u64,
+}
+
+impl Room {
+    /// Forgets what was gathered: every line starts afresh, so that no answer depends on the line before.
+    pub fn forget(&mut self) {
+        self.ready = false;
+    }
+}
+
+/// How far about the foot the first gathering reaches, local units: points of a trust sphere lie within 1 of it.
+const REACH: f64 = 1.1;
+/// And the second, where the first did not suffice: tube and roaming together.
+const FAR_REACH: f64 = 2.3;
+
+impl PointSet {
+    /// F at arc length `s` of a line of unit direction; `spheres` are the trust spheres of the band around it.
+    pub(super) fn probe(&self, line: &Ray, s: f64, spheres: &[Reach], room: &mut Room) -> Probe {
+        let at = line.at(s);
+        let sample = nearest(&self.samples, at, s, spheres);
+        let width = self.samples.widths[sample];
+        let limit = if self.near_rim(sample) { self.kernel.edge() } else { f64::INFINITY };
+        let field = self.field_near(at, sample, room);
+        let stray = field.is_err();
+        let f = field.ok().filter(|f| f.drift <= limit).map(|f| [f.value, f.gradient.dot(line.dir)]);
+        Probe { s, width, f, stray }
+    }
+
+    /// grad F at arc length `s`.
+    pub(super) fn gradient_at(
+        &self,
+        line: &Ray,
+        s: f64,
+        spheres: &[Reach],
+        room: &mut Room,
+    ) -> Option<DVec3> {
+        let at = line.at(s);
+        let sample = nearest(&self.samples, at, s, spheres);
+        self.field_near(at, sample, room).ok().map(|f| f.gradient)
+    }
+
+    /// F at a point for which a sample is known whose trust sphere holds it.
+    pub(super) fn field_near(&self, at: DVec3, sample: usize, room: &mut Room) -> Result<Sample, Stray> {
+        let degree = self.degree;
+        match self.kernel {
+            Kernel::Compact(weight) => self.field(Evaluator { weight, degree }, at, sample, room),
+            Kernel::Gaussian(weight) => self.field(Evaluator { weight, degree }, at, sample, room),
+        }
+    }
+
+    fn field<W: Weight>(
+        &self,
+        evaluator: Evaluator<W>,
+        at: DVec3,
+        sample: usize,
+        room: &mut Room,
+    ) -> Result<Sample, Stray> {
+        room.projections += 1;
+        let width = self.samples.widths[sample];
+        let support = evaluator.weight.support();
+        if room.ready {
+            let answer = evaluator.sample(&room.near, at, width, &mut room.short);
+            if answer != Err(Stray::OutOfReach) {
+                return answer;
+            }
+        }
+        let (p, n) = (self.samples.points[sample], self.samples.normals[sample]);
+        let foot = at - n * n.dot(at - p);
+        room.ready = true;
+        self.samples.gather(foot, width, REACH, support, &mut room.near);
+        let answer = evaluator.sample(&room.near, at, width, &mut room.short);
+        if answer != Err(Stray::OutOfReach) {
+            return answer;
+        }
+        self.samples.gather(at, width, FAR_REACH, support, &mut room.near);
+        match evaluator.sample(&room.near, at, width, &mut room.short) {
+            Err(Stray::OutOfReach) => Err(Stray::Outside),
+            answer => answer,
+        }
+    }
+}
+
+/// The sample that a point is nearest to, in that sample's own widths (ties by index). A function of the point
+/// alone where the list holds all spheres about it.
+fn nearest(samples: &Hierarchy, at: DVec3, s: f64, spheres: &[Reach]) -> usize {
+    let ratio =
+        |i: usize| (samples.points[i] - at).length_squared() / (samples.widths[i] * samples.widths[i]);
+    let mut best = (f64::INFINITY, usize::MAX);
+    for reach in spheres.iter().filter(|r| r.range.contains(s)) {
+        let candidate = (ratio(reach.sample as usize), reach.sample as usize);
+        if candidate < best {
+            best = candidate;
+        }
+    }
+    if best.1 != usize::MAX {
+        return best.1;
+    }
+    // Rounding has put the place a hair outside every sphere of its band: the nearest end serves.
+    let off = |r: &Reach| (r.range.lo - s).max(s - r.range.hi);
+    let end = spheres.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+    end.map_or(0, |r| r.sample as usize)
+}

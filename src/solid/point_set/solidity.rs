@@ -1,0 +1,74 @@
+//! Whether a surface of points has an inside: measured, not believed.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::PointSet;
+use crate::geom::Ray;
+use crate::num::hash::Stream;
+use crate::solid::{Body, Counts, Scratch};
+
+/// What the chords say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solidity {
+    /// How many chords were tried.
+    pub chords: u32,
+    /// How many were odd: an odd number of roots, or a gap whose ends disagree.
+    pub odd: u32,
+    /// The work done.
+    pub counts: Counts,
+}
+
+impl Solidity {
+    /// The share of odd chords.
+    pub fn odd_share(&self) -> f64 {
+        f64::from(self.odd) / f64::from(self.chords.max(1))
+    }
+
+    /// Whether the surface may be taken for a solid's.
+    pub fn body(&self) -> Body {
+        if self.odd_share() <= MOST_ODD { Body::Solid } else { Body::Sheet }
+    }
+}
+
+/// Chords of the bounding sphere in a whole measurement.
+const CHORDS: u32 = 10_000;
+/// They are traced in batches, and no further batch once the outcome is certain.
+const BATCH: u32 = 500;
+/// A solid has at most this share of odd chords.
+const MOST_ODD: f64 = 1e-3;
+
+impl PointSet {
+    /// Traces seeded chords of the bounding sphere, each through two independent points of it. Stops early once
+    /// more chords are odd than a solid may have; the same result for any number of threads.
+    pub fn measure(&self) -> Solidity {
+        let mut total = Solidity { chords: 0, odd: 0, counts: Counts::default() };
+        while total.chords < CHORDS && f64::from(total.odd) <= MOST_ODD * f64::from(CHORDS) {
+            let batch = total.chords..total.chords + BATCH;
+            let parts: Vec<(u32, Counts)> = batch
+                .into_par_iter()
+                .with_min_len(16)
+                .map_init(Scratch::default, |scratch, i| {
+                    scratch.counts = Counts::default();
+                    let odd = self.chord_is_odd(&self.chord(u64::from(i)), scratch);
+                    (u32::from(odd), scratch.counts)
+                })
+                .collect();
+            for (odd, counts) in parts {
+                total.odd += odd;
+                total.counts.add(&counts);
+            }
+            total.chords += BATCH;
+        }
+        total.counts.odd_chords += u64::from(total.odd);
+        total
+    }
+
+    /// The `i`-th chord.
+    fn chord(&self, i: u64) -> Ray {
+        let mut stream = Stream::new(i);
+        let (center, radius) = (self.bounds.center(), 0.5 * self.bounds.diagonal());
+        let (a, b): (DVec3, DVec3) = (stream.direction(), stream.direction());
+        Ray::new(center + radius * a, radius * (b - a))
+    }
+}

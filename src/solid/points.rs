@@ -1,0 +1,38 @@
+//! The declaration of `points`; the surface itself is [`super::point_set`].
+
+use super::point_set::Options;
+use super::table::{Build, Primitive};
+use crate::geom::tolerance;
+use crate::scene::{Call, Decl, Group, Kind, Param};
+
+/// The line of the table.
+pub const PRIMITIVE: Primitive = Primitive {
+    decl: Decl {
+        word: "points",
+        group: Group::Primitive,
+        doc: "The surface of a scanned cloud, or of samples taken evenly from a solid.",
+        params: &[
+            Param::placed("source", Kind::PathOrSolid, "a PLY file, or the solid to sample"),
+            Param::named("samples", Kind::Int(1, 50_000_000), "how many samples to take of a solid"),
+            Param::named("noise", Kind::Length, "standard deviation of the samples' error (default 0)"),
+            Param::named("seed", Kind::Int(0, i64::MAX), "seed of sampling and noise (default 0)"),
+            Param::named("smoothing", Kind::Positive, "factor on the automatic width (default 1)"),
+            Param::named("h", Kind::Size, "one width for all samples instead of the automatic ones"),
+            Param::named("degree", Kind::Int(0, 4), "degree of the local polynomial (default 2)"),
+            Param::named("kernel", Kind::Choice(&["compact", "gaussian"]), "the weight"),
+            Param::named("normals", Kind::Choice(&["file", "estimate"]), "where normals come from"),
+            Param::named("tolerance", Kind::Positive, "relative to the size of the cloud (default 1e-9)"),
+        ],
+        example: "points(sphere(r: 1), samples: 2000)",
+    },
+    build: Build::Points,
+};
+
+/// The options of the surface that a call asks for.
+pub fn options(call: &Call) -> Options {
+    Options {
+        gaussian: call.text("kernel") == Some("gaussian"),
+        degree: call.number("degree").map_or(2, |d| d as usize),
+        tolerance: call.number("tolerance").unwrap_or(tolerance::POINTS),
+    }
+}

@@ -1,0 +1,82 @@
+//! Spheres and ellipsoids.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+
+use super::table::{Build, Primitive};
+use super::{Answer, Crossing, Scratch, Solid};
+use crate::geom::{Aabb, Interval, Ray};
+use crate::num::roots;
+use crate::scene::{BuildError, Call, Decl, Group, Kind, Param, Value};
+
+/// The line of the table.
+pub const PRIMITIVE: Primitive = Primitive {
+    decl: Decl {
+        word: "sphere",
+        group: Group::Primitive,
+        doc: "A ball; with a vector for r, an ellipsoid.",
+        params: &[
+            Param::required("r", Kind::SizeOrVector, "radius, or one for each axis"),
+            Param::named("at", Kind::Vector(3), "centre (default the origin)"),
+        ],
+        example: "sphere(r: 1, at: [0, 0, 0])",
+    },
+    build: Build::Exact(build),
+};
+
+fn build(call: &Call) -> Result<Arc<dyn Solid>, BuildError> {
+    let radii = match call.get("r") {
+        Some(Value::Vector(v)) if v.len() == 3 => DVec3::new(v[0], v[1], v[2]),
+        _ => DVec3::splat(call.number("r").unwrap_or(0.0)),
+    };
+    Ok(Arc::new(Sphere { center: call.vec3("at").unwrap_or(DVec3::ZERO), radii }))
+}
+
+/// Points whose distance from `center`, each axis in units of its radius, is less than one.
+#[derive(Clone, Copy, Debug)]
+pub struct Sphere {
+    /// The centre.
+    pub center: DVec3,
+    /// One radius an axis.
+    pub radii: DVec3,
+}
+
+impl Solid for Sphere {
+    fn bounds(&self) -> Aabb {
+        Aabb { min: self.center - self.radii, max: self.center + self.radii }
+    }
+
+    fn extent_under(&self, to_from: &DAffine3) -> Aabb {
+        // The image of the unit ball under M reaches the length of M's row along each axis.
+        let m = to_from.matrix3 * glam::DMat3::from_diagonal(self.radii);
+        let rows = m.transpose();
+        let reach = DVec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length());
+        let center = to_from.transform_point3(self.center);
+        Aabb { min: center - reach, max: center + reach }
+    }
+
+    /// |o + t d|^2 = 1 in units of the radii. The discriminant is taken at the point nearest to the centre,
+    /// (1 - m)(1 + m), which keeps its digits however far the origin lies; the constant term as (|o| - 1)(|o| + 1),
+    /// which keeps them however near the surface.
+    fn crossings(&self, ray: &Ray, _: Interval, _: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
+        if self.radii.min_element() <= 0.0 {
+            return Answer::whole_line(false);
+        }
+        let (o, d) = ((ray.origin - self.center) / self.radii, ray.dir / self.radii);
+        let a = d.length_squared();
+        let b = o.dot(d);
+        let m = (o - (b / a) * d).length();
+        let c = (o.length() - 1.0) * (o.length() + 1.0);
+        if let Some([t0, t1]) = roots::quadratic(a, b, c, a * (1.0 - m) * (1.0 + m)) {
+            out.push(Crossing::exact(t0, true, 0));
+            out.push(Crossing::exact(t1, false, 0));
+        }
+        Answer::whole_line(false)
+    }
+
+    fn normal(&self, ray: &Ray, crossing: &Crossing, _: &mut Scratch) -> DVec3 {
+        let p = (ray.at(crossing.t) - self.center) / self.radii;
+        (p / self.radii).normalize()
+    }
+}
