@@ -1,5 +1,7 @@
 //! What a CSG object answers: the intervals in which a ray is inside it.
 
+use glam::DVec3;
+
 use crate::geom::Interval;
 use crate::solid::Crossing;
 
@@ -12,6 +14,8 @@ pub struct Boundary {
     pub leaf: u32,
     /// The owner's own crossing, in the owner's frame.
     pub crossing: Crossing,
+    /// The unit normal out of the object, world frame.
+    pub normal: DVec3,
     /// Whether the owner's normal points into the object, as on the faces of a cutter.
     pub flipped: bool,
     /// A leaf with a material that fills the point just inside: the face shows it if its own leaf has none.

@@ -2,13 +2,18 @@
 
 use glam::DVec3;
 
-use crate::csg::{Boundary, Spans};
-use crate::geom::{Aabb, Interval, Ray};
-use crate::solid::Scratch;
+use crate::csg::{self, Boundary, Leaf, Object, Spans};
+use crate::geom::{Aabb, Interval, Ray, tolerance};
 
 /// Everything drawn.
 #[derive(Debug, Default)]
-pub struct World {}
+pub struct World {
+    solids: Object,
+    sheets: Vec<Leaf>,
+    bounds: Aabb,
+    /// The material of a face that has none.
+    bare: u32,
+}
 
 /// The first thing a ray meets.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -36,38 +41,118 @@ pub struct Surface {
 }
 
 impl World {
+    /// The union of `solids` and the sheets beside it. `bounds` is a box around what is bounded, `bare` the material
+    /// of faces that have none.
+    pub fn new(solids: Object, sheets: Vec<Leaf>, bounds: Aabb, bare: u32) -> World {
+        World { solids, sheets, bounds, bare }
+    }
+
     /// A box around everything bounded that is drawn; empty where nothing is.
     pub fn bounds(&self) -> Aabb {
-        todo!()
+        self.bounds
     }
 
     /// The first surface with `t` in `range`.
-    pub fn first(&self, _ray: &Ray, _range: Interval, _scratch: &mut Scratch) -> Option<Hit> {
-        todo!()
+    pub fn first(&self, ray: &Ray, range: Interval, scratch: &mut csg::Scratch) -> Option<Hit> {
+        let solid = self.solids.first(ray, range, scratch);
+        let mut best = solid.map(|(boundary, entering)| Hit { boundary, entering, sheet: false });
+        for index in 0..self.sheets.len() {
+            let end = best.map_or(range.hi, |hit| hit.boundary.t.min(range.hi));
+            let nearest = self.sheet(index, ray, Interval::new(range.lo, end), scratch, |_| false);
+            best = nearest.or(best);
+        }
+        best
     }
 
     /// Whether anything lies in `range`.
-    pub fn blocked(&self, _ray: &Ray, _range: Interval, _scratch: &mut Scratch) -> bool {
-        todo!()
+    pub fn blocked(&self, ray: &Ray, range: Interval, scratch: &mut csg::Scratch) -> bool {
+        self.solids.any(ray, range, scratch)
+            || (0..self.sheets.len()).any(|i| self.sheet(i, ray, range, scratch, |_| false).is_some())
     }
 
     /// All spans of the union of the solids, clipped to `range`.
-    pub fn spans(&self, _ray: &Ray, _range: Interval, _scratch: &mut Scratch, _out: &mut Spans) {
-        todo!()
+    pub fn spans(&self, ray: &Ray, range: Interval, scratch: &mut csg::Scratch, out: &mut Spans) {
+        self.solids.spans(ray, range, scratch, out);
     }
 
     /// All crossings of sheets in `range`, ascending.
-    pub fn sheets(&self, _ray: &Ray, _range: Interval, _scratch: &mut Scratch, _out: &mut Vec<Hit>) {
-        todo!()
+    pub fn sheets(&self, ray: &Ray, range: Interval, scratch: &mut csg::Scratch, out: &mut Vec<Hit>) {
+        for index in 0..self.sheets.len() {
+            self.sheet(index, ray, range, scratch, |hit| {
+                out.push(hit);
+                true
+            });
+        }
+        out.sort_by(|a, b| a.boundary.t.total_cmp(&b.boundary.t));
+    }
+
+    /// Shows a sheet's crossings in the range to `go_on`, ascending, until it returns false; returns the last.
+    fn sheet(
+        &self,
+        index: usize,
+        ray: &Ray,
+        range: Interval,
+        scratch: &mut csg::Scratch,
+        mut go_on: impl FnMut(Hit) -> bool,
+    ) -> Option<Hit> {
+        let leaf = &self.sheets[index];
+        let range = leaf.bounds.clip(ray).intersect(range);
+        let local = leaf.place.ray_to_local(ray);
+        let (mut lo, mut last) = (range.lo, None);
+        while lo <= range.hi {
+            let mut found = Vec::new();
+            scratch.solid.counts.leaf_queries += 1;
+            let rest = Interval::new(lo, range.hi);
+            let answer = leaf.solid.crossings(&local, rest, &mut scratch.solid, &mut found);
+            for crossing in found.into_iter().filter(|c| lo < c.t && c.t <= range.hi) {
+                let normal = leaf.solid.normal(&local, &crossing, &mut scratch.solid);
+                let normal = leaf.place.normal_to_world(normal);
+                let t = crossing.t;
+                let boundary =
+                    Boundary { t, leaf: index as u32, crossing, normal, flipped: false, filler: None };
+                let hit = Hit { boundary, entering: crossing.entering, sheet: true };
+                last = Some(hit);
+                if !go_on(hit) {
+                    return last;
+                }
+            }
+            if answer.range.hi <= lo {
+                break;
+            }
+            lo = answer.range.hi;
+        }
+        last
+    }
+
+    fn leaf(&self, hit: &Hit) -> &Leaf {
+        let leaves = if hit.sheet { &self.sheets } else { self.solids.leaves() };
+        &leaves[hit.boundary.leaf as usize]
     }
 
     /// The surface of a hit.
-    pub fn surface(&self, _ray: &Ray, _hit: &Hit, _scratch: &mut Scratch) -> Surface {
-        todo!()
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        let leaf = self.leaf(hit);
+        let boundary = &hit.boundary;
+        let point = ray.at(boundary.t);
+        let filler = boundary.filler.and_then(|f| self.solids.leaves()[f as usize].material);
+        let scale = point.length().max(ray.origin.length()).max(leaf.scale());
+        let error = boundary.crossing.shift.max(leaf.solid.shift_bound()) * leaf.place.stretch;
+        Surface {
+            point,
+            normal: boundary.normal,
+            material: leaf.material.or(filler).unwrap_or(self.bare),
+            // Twice: the ray that leaves has an error of its own at the same face.
+            offset: 2.0 * (error + tolerance::cleanup(scale)),
+        }
     }
 
     /// The name of a boundary's leaf, as the scene calls it.
-    pub fn leaf_name(&self, _hit: &Hit) -> &str {
-        todo!()
+    pub fn leaf_name(&self, hit: &Hit) -> &str {
+        &self.leaf(hit).name
+    }
+
+    /// The name of the leaf of a span's boundary.
+    pub fn name(&self, boundary: &Boundary) -> &str {
+        &self.solids.leaves()[boundary.leaf as usize].name
     }
 }

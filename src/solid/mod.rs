@@ -59,6 +59,11 @@ pub trait Solid: Send + Sync + Debug {
     /// The outward unit normal at a crossing that [`Solid::crossings`] gave for this ray.
     fn normal(&self, ray: &Ray, crossing: &Crossing, scratch: &mut Scratch) -> DVec3;
 
+    /// The bound that [`Crossing::shift`] keeps, length of the solid's own frame.
+    fn shift_bound(&self) -> f64 {
+        0.0
+    }
+
     /// Whether asking costs much more than a closed form: such solids are asked last.
     fn is_costly(&self) -> bool {
         false

@@ -170,6 +170,10 @@ impl Solid for PointSet {
         self.line_normal(ray, crossing, scratch)
     }
 
+    fn shift_bound(&self) -> f64 {
+        self.tolerance
+    }
+
     fn is_costly(&self) -> bool {
         true
     }

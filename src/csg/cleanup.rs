@@ -1,0 +1,136 @@
+//! The one clean-up at the root: films and slits thinner than rounding can tell are removed.
+//!
+//! First every gap, judged on its own exact ends, is filled, then every span dropped, whose width along the normal,
+//! dt |dir| max(|d.n_a|, |d.n_b|), is at most tau = 16 eps S + e_a + e_b. The first surface is reported as soon as no
+//! later crossing can change it.
+
+use super::owner::boundary;
+use super::spans::{Boundary, Span};
+use super::sweep::{Change, Sweep};
+use crate::geom::tolerance;
+
+/// Changes of an object with the clean-up applied, lazily.
+pub(super) struct Cleaner<'a> {
+    pub sweep: Sweep<'a>,
+    /// A change already taken from the sweep.
+    ahead: Option<Change>,
+    /// The largest tau that two leaves of the tree can have on this ray near its range.
+    reach: f64,
+    /// Whether the next span has already begun where the range begins.
+    open: bool,
+}
+
+/// A change with the slope of its face: |dir . n|.
+#[derive(Clone, Copy)]
+struct Face {
+    change: Change,
+    slope: f64,
+}
+
+impl<'a> Cleaner<'a> {
+    /// Starts the sweep. `bound` is [`super::Object::bound`].
+    pub fn new(mut sweep: Sweep<'a>, bound: [f64; 2]) -> Cleaner<'a> {
+        let open = sweep.begin();
+        let reach = bound[1] + tolerance::cleanup(bound[0].max(sweep.ray.origin.length()));
+        Cleaner { sweep, ahead: None, reach, open }
+    }
+
+    fn face(&mut self, change: Change) -> Face {
+        let normal = self.sweep.leaf_normal(change.leaf, &change.crossing);
+        Face { change, slope: self.sweep.ray.dir.dot(normal).abs() }
+    }
+
+    /// Whether what lies between two faces is too thin to be told from nothing.
+    fn is_thin(&self, a: &Face, b: &Face) -> bool {
+        (b.change.t - a.change.t) * a.slope.max(b.slope) <= self.tau(&a.change, &b.change)
+    }
+
+    fn tau(&self, a: &Change, b: &Change) -> f64 {
+        let ray = self.sweep.ray;
+        let leaves = [a, b].map(|c| &self.sweep.tree.leaves()[c.leaf as usize]);
+        let scale = ray.origin.length().max(ray.at(a.t).length());
+        let scale = scale.max(leaves[0].scale()).max(leaves[1].scale());
+        let error = |i: usize, c: &Change| c.crossing.shift * leaves[i].place.stretch;
+        tolerance::cleanup(scale) + error(0, a) + error(1, b)
+    }
+
+    /// Past this t nothing can be thin together with a face.
+    fn horizon(&self, face: &Face) -> f64 {
+        let grown = self.reach + tolerance::cleanup(self.sweep.ray.at(face.change.t).length());
+        face.change.t + grown / face.slope
+    }
+
+    /// The next change not after `limit`.
+    fn take(&mut self, limit: f64) -> Option<Face> {
+        let change = match self.ahead.take() {
+            Some(ahead) if ahead.t <= limit => ahead,
+            Some(ahead) => {
+                self.ahead = Some(ahead);
+                return None;
+            }
+            None => self.sweep.next_until(limit)?,
+        };
+        Some(self.face(change))
+    }
+
+    /// The exit of a span that has begun, gaps too thin to be told filled; `None` where there is none up to the limit
+    /// given for a first exit. An exit found is final.
+    fn exit(&mut self, limit: f64) -> Option<Face> {
+        let mut exit = self.take(limit)?;
+        loop {
+            let horizon = self.horizon(&exit);
+            let Some(entry) = self.take(horizon) else { return Some(exit) };
+            if !self.is_thin(&exit, &entry) {
+                self.ahead = Some(entry.change);
+                return Some(exit);
+            }
+            self.sweep.scratch.counts.cleaned += 1;
+            exit = self.take(f64::INFINITY)?;
+        }
+    }
+
+    /// The next span that survives.
+    pub fn span(&mut self) -> Option<Span> {
+        loop {
+            let enter = if std::mem::take(&mut self.open) { None } else { Some(self.take(f64::INFINITY)?) };
+            let exit = self.exit(f64::INFINITY);
+            if let (Some(a), Some(b)) = (&enter, &exit)
+                && self.is_thin(a, b)
+            {
+                self.sweep.scratch.counts.cleaned += 1;
+                continue;
+            }
+            let [enter, exit] = [enter, exit].map(|f| f.map(|f| self.owned(&f.change)));
+            return Some(Span { enter, exit });
+        }
+    }
+
+    /// The first boundary of the first span that survives, and whether the ray goes in there.
+    pub fn first(&mut self) -> Option<(Boundary, bool)> {
+        self.first_face().map(|(face, entering)| (self.owned(&face.change), entering))
+    }
+
+    /// Whether any span survives.
+    pub fn any(&mut self) -> bool {
+        self.open || self.first_face().is_some()
+    }
+
+    fn first_face(&mut self) -> Option<(Face, bool)> {
+        if std::mem::take(&mut self.open) {
+            return self.exit(f64::INFINITY).map(|exit| (exit, false));
+        }
+        loop {
+            let enter = self.take(f64::INFINITY)?;
+            let horizon = self.horizon(&enter);
+            match self.exit(horizon) {
+                Some(exit) if self.is_thin(&enter, &exit) => self.sweep.scratch.counts.cleaned += 1,
+                _ => return Some((enter, true)),
+            }
+        }
+    }
+
+    fn owned(&mut self, change: &Change) -> Boundary {
+        let reach = self.reach;
+        boundary(&mut self.sweep, change, reach)
+    }
+}
