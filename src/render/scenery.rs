@@ -1,0 +1,145 @@
+//! What an integrator asks of the world, as a trait, so that tests can render closed forms without it; and
+//! the counting of rays.
+
+use crate::geom::{Aabb, Interval, Ray};
+use crate::shot::{Hit, Surface, World};
+use crate::solid::Scratch;
+
+/// Something that answers rays.
+pub trait Scenery: Sync {
+    /// A box around everything bounded in it.
+    fn bounds(&self) -> Aabb;
+
+    /// The first surface with `t` in `range`.
+    fn first(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> Option<Hit>;
+
+    /// Whether anything lies in `range`.
+    fn blocked(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> bool;
+
+    /// The surface of a hit.
+    fn surface(&self, ray: &Ray, hit: &Hit, scratch: &mut Scratch) -> Surface;
+}
+
+impl Scenery for World {
+    fn bounds(&self) -> Aabb {
+        World::bounds(self)
+    }
+
+    fn first(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> Option<Hit> {
+        World::first(self, ray, range, scratch)
+    }
+
+    fn blocked(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> bool {
+        World::blocked(self, ray, range, scratch)
+    }
+
+    fn surface(&self, ray: &Ray, hit: &Hit, scratch: &mut Scratch) -> Surface {
+        World::surface(self, ray, hit, scratch)
+    }
+}
+
+/// How many rays were traced.
+#[derive(Clone, Copy, Default, PartialEq, Eq, Debug)]
+pub struct Rays {
+    /// From the eye.
+    pub camera: u64,
+    /// To a light or the sky.
+    pub shadow: u64,
+    /// From surface to surface.
+    pub bounce: u64,
+}
+
+impl Rays {
+    /// Adds another tile's rays.
+    pub fn add(&mut self, o: &Rays) {
+        self.camera += o.camera;
+        self.shadow += o.shadow;
+        self.bounce += o.bounce;
+    }
+}
+
+/// Traces rays of one tile and counts them.
+pub struct Tracer<'a, S> {
+    scenery: &'a S,
+    /// Room and counts of the world.
+    pub scratch: Scratch,
+    /// Rays so far.
+    pub rays: Rays,
+}
+
+/// A surface that the eye sees.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// What was met.
+    pub hit: Hit,
+    /// The surface there.
+    pub surface: Surface,
+    /// The unit normal on the eye's side: of sheets, and of solids seen from inside, turned to the eye.
+    pub normal: glam::DVec3,
+}
+
+impl<'a, S: Scenery> Tracer<'a, S> {
+    /// Starts a tile.
+    pub fn new(scenery: &'a S) -> Tracer<'a, S> {
+        Tracer { scenery, scratch: Scratch::default(), rays: Rays::default() }
+    }
+
+    /// What the eye sees along a ray.
+    pub fn see(&mut self, ray: &Ray) -> Option<Seen> {
+        self.rays.camera += 1;
+        let hit = self.scenery.first(ray, Interval::AHEAD, &mut self.scratch)?;
+        let surface = self.scenery.surface(ray, &hit, &mut self.scratch);
+        let away = if hit.sheet { 0.0 < surface.normal.dot(ray.dir) } else { !hit.entering };
+        Some(Seen { hit, surface, normal: if away { -surface.normal } else { surface.normal } })
+    }
+
+    /// Whether something lies between a surface and what sends it light.
+    pub fn shadowed(&mut self, ray: &Ray, range: Interval) -> bool {
+        self.rays.shadow += 1;
+        self.scenery.blocked(ray, range, &mut self.scratch)
+    }
+}
+
+/// A closed form to test integrators on.
+#[cfg(test)]
+pub mod test_ball {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::csg::Boundary;
+    use crate::num::roots::quadratic;
+    use crate::solid::Crossing;
+
+    /// The unit ball at the origin.
+    pub struct Ball;
+
+    fn roots(ray: &Ray) -> Option<[f64; 2]> {
+        let (a, b) = (ray.dir.length_squared(), ray.origin.dot(ray.dir));
+        let c = ray.origin.length_squared() - 1.0;
+        quadratic(a, b, c, b * b - a * c)
+    }
+
+    impl Scenery for Ball {
+        fn bounds(&self) -> Aabb {
+            Aabb::of_points([DVec3::NEG_ONE, DVec3::ONE])
+        }
+
+        fn first(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> Option<Hit> {
+            scratch.counts.leaf_queries += 1;
+            let roots = roots(ray)?;
+            let first = (0..2).find(|&i| range.lo < roots[i] && roots[i] <= range.hi)?;
+            let crossing = Crossing::exact(roots[first], first == 0, 0);
+            let boundary = Boundary { t: crossing.t, leaf: 0, crossing, flipped: false, filler: None };
+            Some(Hit { boundary, entering: first == 0, sheet: false })
+        }
+
+        fn blocked(&self, ray: &Ray, range: Interval, _: &mut Scratch) -> bool {
+            roots(ray).is_some_and(|[lo, hi]| lo <= range.hi && range.lo < hi)
+        }
+
+        fn surface(&self, ray: &Ray, hit: &Hit, _: &mut Scratch) -> Surface {
+            let point = ray.at(hit.boundary.t);
+            Surface { point, normal: point.normalize(), material: 0, offset: 1e-9 }
+        }
+    }
+}
