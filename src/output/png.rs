@@ -16,10 +16,49 @@ pub fn write_png(film: &Film, exposure: f64, tone: Tone, sink: &mut dyn io::Writ
     for [r, g, b, _] in &film.rgba {
         bytes.extend(tone::display([*r, *g, *b], exposure, tone));
     }
-    PngEncoder::new(sink)
-        .write_image(&bytes, film.size[0], film.size[1], ExtendedColorType::Rgb8)
-        .map_err(|e| match e {
-            ImageError::IoError(e) => e,
-            e => io::Error::other(e),
+    let mut remembering = Remembering { sink, failure: None };
+    let encoded = PngEncoder::new(&mut remembering).write_image(
+        &bytes,
+        film.size[0],
+        film.size[1],
+        ExtendedColorType::Rgb8,
+    );
+    if let Some(e) = remembering.failure {
+        return Err(e);
+    }
+    encoded.map_err(|e| match e {
+        ImageError::IoError(e) => e,
+        e => io::Error::other(e),
+    })
+}
+
+/// Keeps the first failure: the encoder writes the end of the file when it is dropped and says nothing if
+/// that fails.
+struct Remembering<'a> {
+    sink: &'a mut dyn io::Write,
+    failure: Option<io::Error>,
+}
+
+impl Remembering<'_> {
+    fn remember<T>(&mut self, result: io::Result<T>) -> io::Result<T> {
+        result.map_err(|e| {
+            let kind = e.kind();
+            if kind != io::ErrorKind::Interrupted && self.failure.is_none() {
+                self.failure = Some(e);
+            }
+            kind.into()
         })
+    }
+}
+
+impl io::Write for Remembering<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let result = self.sink.write(bytes);
+        self.remember(result)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let result = self.sink.flush();
+        self.remember(result)
+    }
 }

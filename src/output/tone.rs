@@ -28,28 +28,30 @@ pub fn reinhard(color: [f32; 3]) -> [f32; 3] {
     if luminance.is_infinite() { [1.0; 3] } else { color.map(|c| c / (1.0 + luminance)) }
 }
 
+/// Rows of the matrix into the wider triangle of AgX.
+const AGX_INSET: [[f32; 3]; 3] = [
+    [0.842_479_06, 0.078_433_6, 0.079_223_745],
+    [0.042_328_242, 0.878_468_64, 0.079_166_13],
+    [0.042_375_655, 0.078_433_6, 0.879_143],
+];
+
+/// Rows of its inverse.
+const AGX_OUTSET: [[f32; 3]; 3] = [
+    [1.196_879, -0.098_020_88, -0.099_029_74],
+    [-0.052_896_85, 1.151_903_1, -0.098_961_18],
+    [-0.052_971_635, -0.098_043_45, 1.151_073_7],
+];
+
 /// The AgX base look (Troy Sobotka 2022) as display-encoded values, in the fit by Benjamin Wrensch ("Minimal
 /// AgX Implementation", 2023): into a wider triangle, logarithm, a polynomial for the curve, and back.
 pub fn agx(color: [f32; 3]) -> [f32; 3] {
-    /// Rows of the matrix into the wider triangle.
-    const INSET: [[f32; 3]; 3] = [
-        [0.842_479_06, 0.078_433_6, 0.079_223_745],
-        [0.042_328_242, 0.878_468_64, 0.079_166_13],
-        [0.042_375_655, 0.078_433_6, 0.879_142_97],
-    ];
-    /// Rows of its inverse.
-    const OUTSET: [[f32; 3]; 3] = [
-        [1.196_879, -0.098_020_88, -0.099_029_74],
-        [-0.052_896_85, 1.151_903_1, -0.098_961_18],
-        [-0.052_971_635, -0.098_043_45, 1.151_073_7],
-    ];
     /// Stops relative to 1 that the curve covers: ten below and six and a half above a middle grey of 0.18.
     const STOPS: [f32; 2] = [-12.473_93, 4.026_069];
-    let curved = times(&INSET, color.map(|c| c.min(f32::MAX))).map(|c| {
+    let curved = times(&AGX_INSET, color.map(|c| c.min(f32::MAX))).map(|c| {
         let stops = c.max(f32::MIN_POSITIVE).log2().clamp(STOPS[0], STOPS[1]);
         agx_curve((stops - STOPS[0]) / (STOPS[1] - STOPS[0]))
     });
-    times(&OUTSET, curved)
+    times(&AGX_OUTSET, curved)
 }
 
 /// The curve over the share of the stops, by Horner's rule.
@@ -86,6 +88,14 @@ mod tests {
             }
             assert_eq!(display([0.0; 3], 0.0, tone), [0; 3], "{tone:?}");
             assert_eq!(display([f32::INFINITY; 3], 0.0, tone), [255; 3], "{tone:?}");
+        }
+    }
+
+    #[test]
+    fn the_matrices_of_agx_undo_each_other() {
+        for unit in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+            let back = times(&AGX_OUTSET, times(&AGX_INSET, unit));
+            assert!(back.iter().zip(unit).all(|(a, b)| (a - b).abs() < 1e-4), "{back:?}");
         }
     }
 
