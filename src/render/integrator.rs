@@ -47,9 +47,8 @@ impl<'a, S: Scenery> Painter<'a, S> {
     /// Paints a pixel of the whole picture to a place of a film.
     fn pixel(&self, tracer: &mut Tracer<S>, x: u32, y: u32, pixel: usize, film: &mut Film) {
         let settings = self.view.settings;
-        let ray_at = |dx: f64, dy: f64| {
-            self.view.camera.ray(f64::from(x) + dx, f64::from(y) + dy, settings.size)
-        };
+        let ray_at =
+            |dx: f64, dy: f64| self.view.camera.ray(f64::from(x) + dx, f64::from(y) + dy, settings.size);
         let centre = (!film.layers.is_empty()).then(|| {
             let ray = ray_at(0.5, 0.5);
             let seen = tracer.see(&ray);

@@ -158,7 +158,8 @@ impl Settings {
         if let Some([x0, y0, x1, y1]) = overrides.crop {
             let [w, h] = self.size;
             if !(x0 < x1 && x1 <= w && y0 < y1 && y1 <= h) {
-                let message = format!("the part {x0},{y0},{x1},{y1} does not lie in the picture of {w} x {h}");
+                let message =
+                    format!("the part {x0},{y0},{x1},{y1} does not lie in the picture of {w} x {h}");
                 return Err(error("crop", message, "x0 < x1 <= width and y0 < y1 <= height"));
             }
             self.crop = Some([x0, y0, x1, y1]);
