@@ -65,7 +65,8 @@ pub struct Layer {
 pub struct Film {
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// Linear red, green, blue, each already multiplied by the alpha beside them; rows from the top.
+    /// Linear red, green, blue, and the share of the pixel that shows something drawn or the sky, which the
+    /// colour is already multiplied with; rows from the top.
     pub rgba: Vec<[f32; 4]>,
     /// The layers asked for.
     pub layers: Vec<Layer>,

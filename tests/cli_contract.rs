@@ -72,6 +72,34 @@ fn missing_inputs_exit_with_66() {
 }
 
 #[test]
+fn outputs_that_cannot_be_made_exit_with_73_and_harm_nothing() {
+    let dir = folder_with_scene();
+    let scene = "draw sphere(r: 1)\n";
+    fs::write(dir.path().join("scene.png"), scene).unwrap();
+    fs::create_dir(dir.path().join("folder.png")).unwrap();
+    let cases: &[&[&str]] = &[
+        &["render", "scene.png"],
+        &["render", "scene.png", "-o", "./scene.png"],
+        &["render", "a.pss", "--stats-json", "a.pss"],
+        &["render", "a.pss", "-o", "folder.png"],
+        &["render", "a.pss", "-o", "nowhere/a.png"],
+        &["render", "a.pss", "-o", "a.pss/b.exr"],
+    ];
+    for args in cases {
+        assert_eq!(code(dir.path(), args), 73, "{args:?}");
+    }
+    assert_eq!(fs::read_to_string(dir.path().join("scene.png")).unwrap(), scene);
+    assert_eq!(fs::read_to_string(dir.path().join("a.pss")).unwrap(), scene);
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 3, "nothing is written");
+}
+
+#[test]
+fn a_pixel_outside_the_picture_exits_with_2() {
+    let dir = folder_with_scene();
+    assert_eq!(code(dir.path(), &["probe", "a.pss", "--pixel", "8,0", "--size", "8x8"]), 2);
+}
+
+#[test]
 fn texts_that_are_none_exit_with_65() {
     let dir = folder_with_scene();
     fs::write(dir.path().join("latin.pss"), b"// caf\xe9\n").unwrap();

@@ -32,10 +32,10 @@ pub fn run(args: &ProbeArgs, console: &Console) -> Result<(), Failure> {
     };
     let print = if args.json { json } else { table };
     for (batch, rays) in rays.chunks(BATCH).enumerate() {
-        let answer = |(i, ray): (usize, &Ray)| {
-            print(&Answer::of(&loaded.shot.world, batch * BATCH + i, ray, &mut Scratch::default()))
+        let answer = |scratch: &mut Scratch, (i, ray): (usize, &Ray)| {
+            print(&Answer::of(&loaded.shot.world, batch * BATCH + i, ray, scratch))
         };
-        let lines: Vec<String> = rays.par_iter().enumerate().map(answer).collect();
+        let lines: Vec<String> = rays.par_iter().enumerate().map_init(Scratch::default, answer).collect();
         if !console::print(lines.concat().as_bytes())? {
             break;
         }

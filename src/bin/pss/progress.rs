@@ -1,10 +1,11 @@
 //! Progress on standard error, drawn by a thread that only reads a counter.
 
+use std::fmt;
 use std::io::{self, IsTerminal, Write};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
 use crate::args::ProgressMode;
 
@@ -53,9 +54,13 @@ pub fn show<R: Send>(
 }
 
 fn bar(total: u64) -> ProgressBar {
-    let style =
-        ProgressStyle::with_template("{wide_bar} {percent:>3} %  {human_pos} pixels, {per_sec}, {eta} left");
-    ProgressBar::new(total).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {rate} pixels/s, {eta} left")
+        .unwrap_or_else(|_| ProgressStyle::default_bar())
+        .with_key("rate", |state: &ProgressState, out: &mut dyn fmt::Write| {
+            // A rate that cannot be drawn is left out.
+            let _ = write!(out, "{:.0}", state.per_sec());
+        });
+    ProgressBar::new(total).with_style(style)
 }
 
 /// Seconds left at the mean rate so far; `None` before anything is done.

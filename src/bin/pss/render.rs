@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use pss::diag::{Diagnostic, Fault};
 use pss::film::Film;
-use pss::output;
+use pss::output::{self, Format};
 use pss::prepare::Options;
 use pss::render::{Progress, Rendered};
 use pss::shot::{Settings, Shot};
@@ -22,7 +22,11 @@ pub fn run(args: &RenderArgs, console: &Console) -> Result<(), Failure> {
     let start = Instant::now();
     let outputs = outputs(args)?;
     let options = Options { samples: args.spp, seed: args.seed, crop: args.crop, ..Options::default() };
-    let loaded = load::load(&args.scene, options, args.quiet, console)?;
+    let mut loaded = load::load(&args.scene, options, args.quiet, console)?;
+    if !outputs.iter().any(|path| Format::of(path) == Some(Format::Exr)) {
+        // No other format holds layers.
+        loaded.shot.settings.aov.clear();
+    }
     for path in outputs.iter().filter(|path| !is_stdout(path)).chain(&args.stats_json) {
         output::check(path, &loaded.inputs)?;
     }
