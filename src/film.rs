@@ -1,1 +1,132 @@
-//! Pixels in memory.
+//! Pixels in memory: linear colour and, where asked for, layers of facts beside it. How they are filled and
+//! how they become files is left to [`crate::render`] and [`crate::output`].
+
+/// A layer of facts about what the ray through each pixel's centre sees; never averaged.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Aov {
+    /// Distance from the eye, world length; infinite where nothing is.
+    Depth,
+    /// Unit normal out of the solid, of a sheet toward the eye; zero where nothing is.
+    Normal,
+    /// Point in the world; zero where nothing is.
+    Position,
+    /// Share of light the surface sends on, linear; zero where nothing is.
+    Albedo,
+    /// One more than the index of the leaf that owns the face; zero where nothing is.
+    Leaf,
+}
+
+impl Aov {
+    /// All layers, in the order they are kept.
+    pub const ALL: [Aov; 5] = [Aov::Depth, Aov::Normal, Aov::Position, Aov::Albedo, Aov::Leaf];
+
+    /// The word in `aov: [...]`.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Aov::Depth => "depth",
+            Aov::Normal => "normal",
+            Aov::Position => "position",
+            Aov::Albedo => "albedo",
+            Aov::Leaf => "leaf",
+        }
+    }
+
+    /// The names of its channels in a file.
+    pub const fn channels(self) -> &'static [&'static str] {
+        match self {
+            Aov::Depth => &["depth.Z"],
+            Aov::Normal => &["N.X", "N.Y", "N.Z"],
+            Aov::Position => &["P.X", "P.Y", "P.Z"],
+            Aov::Albedo => &["albedo.R", "albedo.G", "albedo.B"],
+            Aov::Leaf => &["leaf.id"],
+        }
+    }
+
+    /// The value of every channel where nothing is.
+    pub const fn nothing(self) -> f32 {
+        match self {
+            Aov::Depth => f32::INFINITY,
+            _ => 0.0,
+        }
+    }
+}
+
+/// One layer of a film.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Layer {
+    /// What it holds.
+    pub aov: Aov,
+    /// Rows from the top, pixels from the left, the channels of a pixel side by side.
+    pub data: Vec<f32>,
+}
+
+/// A picture.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Film {
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// Linear red, green, blue, and the share of the pixel that shows something drawn or the sky, which the
+    /// colour is already multiplied with; rows from the top.
+    pub rgba: Vec<[f32; 4]>,
+    /// The layers asked for.
+    pub layers: Vec<Layer>,
+}
+
+/// There is not enough memory for a picture.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
+#[error("no memory for a picture of {} x {} pixels", size[0], size[1])]
+pub struct NoRoom {
+    /// The size asked for.
+    pub size: [u32; 2],
+}
+
+impl Film {
+    /// A black, empty picture; fails where there is not enough memory.
+    pub fn new(size: [u32; 2], aovs: &[Aov]) -> Result<Film, NoRoom> {
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        let layers = aovs
+            .iter()
+            .map(|&aov| {
+                let data = filled(pixels * aov.channels().len() as u64, aov.nothing())?;
+                Some(Layer { aov, data })
+            })
+            .collect::<Option<Vec<Layer>>>();
+        let rgba = filled(pixels, [0.0; 4]);
+        rgba.zip(layers).map(|(rgba, layers)| Film { size, rgba, layers }).ok_or(NoRoom { size })
+    }
+
+    /// The colour of a pixel.
+    pub fn pixel(&self, x: u32, y: u32) -> [f32; 4] {
+        self.rgba[y as usize * self.size[0] as usize + x as usize]
+    }
+
+    /// The layer of a kind, if it was asked for.
+    pub fn layer(&self, aov: Aov) -> Option<&Layer> {
+        self.layers.iter().find(|l| l.aov == aov)
+    }
+
+    /// Copies a smaller picture with the same layers to a place of this one.
+    pub fn paste(&mut self, part: &Film, at: [u32; 2]) {
+        let width = self.size[0] as usize;
+        let part_width = part.size[0] as usize;
+        for row in 0..part.size[1] as usize {
+            let to = (at[1] as usize + row) * width + at[0] as usize;
+            let from = row * part_width;
+            self.rgba[to..to + part_width].copy_from_slice(&part.rgba[from..from + part_width]);
+            for (layer, other) in self.layers.iter_mut().zip(&part.layers) {
+                let n = layer.aov.channels().len();
+                layer.data[to * n..(to + part_width) * n]
+                    .copy_from_slice(&other.data[from * n..(from + part_width) * n]);
+            }
+        }
+    }
+}
+
+/// So many copies of a value, or `None` where memory does not suffice.
+fn filled<T: Copy>(count: u64, value: T) -> Option<Vec<T>> {
+    let count = usize::try_from(count).ok()?;
+    let mut list = Vec::new();
+    list.try_reserve_exact(count).ok()?;
+    list.resize(count, value);
+    Some(list)
+}

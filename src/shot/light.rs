@@ -1,5 +1,125 @@
-//! Lights.
+//! Lights: what they send to a point. Whether anything is in the way is left to the integrator.
+//!
+//! Radiances are scaled so that a matte surface of colour c that faces a sun or a point light, or lies under a
+//! sky alone, has radiance c x colour x intensity.
 
-/// A light.
-#[derive(Clone, Debug)]
-pub struct Light {}
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};
+
+/// The `light` item.
+pub const DECL: Decl = Decl {
+    word: "light",
+    group: Group::Light,
+    doc: "A sun (`direction`), a point light (`at`) or, by `color` alone, a sky.",
+    params: &[
+        Param::named("direction", Kind::Vector(3), "a sun: the way its light travels"),
+        Param::named("softness", Kind::Angle, "the sun's full angular diameter; default 0deg"),
+        Param::named("at", Kind::Vector(3), "a point light: where it is"),
+        Param::named("falloff", Kind::Bool, "whether a point light fades with distance; default true"),
+        Param::named("color", Kind::Color, "its colour; default white"),
+        Param::named("intensity", Kind::Number, "a factor of the colour; default 1"),
+    ],
+    example: "light sun(direction: [-1, 2, -3], intensity: 3, softness: 2deg)",
+};
+
+/// A light. `color` is linear and holds the intensity: what a white matte surface that gets all of it shows.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Light {
+    /// Light from far away.
+    Sun {
+        /// Unit vector from a surface to the middle of the sun.
+        toward: DVec3,
+        /// Half the sun's angular diameter, radians, at most a quarter turn.
+        half_angle: f64,
+        /// Colour times intensity.
+        color: [f32; 3],
+    },
+    /// Light from a point.
+    Point {
+        /// Where.
+        at: DVec3,
+        /// Whether it fades with the square of the distance, 1 at one scene unit.
+        falloff: bool,
+        /// Colour times intensity.
+        color: [f32; 3],
+    },
+    /// Light from all around.
+    Sky {
+        /// Radiance of every direction.
+        color: [f32; 3],
+    },
+    /// Light from the eye, without distance and without shadow: what the eye sees it reaches.
+    Headlight {
+        /// Colour times intensity.
+        color: [f32; 3],
+    },
+}
+
+/// The share of the sky where a scene has no light; the headlight is the rest, so that a surface that faces
+/// the eye in the open shows its own colour.
+const DEFAULT_SKY: f32 = 0.4;
+
+/// What lights a scene that has no light: a sky and a headlight.
+pub const DEFAULT: [Light; 2] =
+    [Light::Sky { color: [DEFAULT_SKY; 3] }, Light::Headlight { color: [1.0 - DEFAULT_SKY; 3] }];
+
+/// Builds the light of a `light` item.
+pub fn build(call: &Call) -> Result<Light, BuildError> {
+    let color = radiance(call)?;
+    let (direction, at) = (call.vec3("direction"), call.vec3("at"));
+    if call.get("softness").is_some() && direction.is_none() {
+        return Err(error("softness", "only a sun has `softness`", "give the sun a `direction:`"));
+    }
+    if call.get("falloff").is_some() && at.is_none() {
+        return Err(error("falloff", "only a point light has `falloff`", "give the point light `at:`"));
+    }
+    match (direction, at) {
+        (Some(_), Some(_)) => {
+            Err(error("at", "a light has either `direction` or `at`", "make two lights of it"))
+        }
+        (Some(direction), None) => sun(call, direction, color),
+        (None, Some(at)) => Ok(Light::Point { at, falloff: call.flag("falloff").unwrap_or(true), color }),
+        (None, None) if call.get("color").is_some() => Ok(Light::Sky { color }),
+        (None, None) => Err(error(
+            "",
+            "nothing says what light this is",
+            "give `direction:` for a sun, `at:` for a point light, or `color:` for a sky",
+        )),
+    }
+}
+
+fn sun(call: &Call, direction: DVec3, color: [f32; 3]) -> Result<Light, BuildError> {
+    let toward = -direction.normalize_or_zero();
+    if toward == DVec3::ZERO {
+        return Err(error("direction", "`direction` has no direction", "direction: [0, 0, -1]"));
+    }
+    let softness = call.angle("softness").unwrap_or(0.0);
+    if !(0.0..=PI).contains(&softness) {
+        let message = format!("`softness` is {}deg", softness.to_degrees());
+        return Err(error("softness", message, "the sun's diameter lies between 0deg and 180deg"));
+    }
+    Ok(Light::Sun { toward, half_angle: 0.5 * softness, color })
+}
+
+fn radiance(call: &Call) -> Result<[f32; 3], BuildError> {
+    let color = call.color("color").unwrap_or([1.0; 3]);
+    let intensity = call.number("intensity").unwrap_or(1.0);
+    if !(intensity.is_finite() && 0.0 <= intensity) {
+        return Err(error("intensity", "`intensity` is negative", "a light cannot take light away"));
+    }
+    if !color.iter().all(|c| c.is_finite() && 0.0 <= *c) {
+        return Err(error("color", "`color` has a negative part", "a light cannot take light away"));
+    }
+    let radiance = color.map(|c| c * intensity as f32);
+    if !radiance.iter().all(|c| c.is_finite()) {
+        return Err(error("intensity", "the light is too bright to count with", "make `intensity` smaller"));
+    }
+    Ok(radiance)
+}
+
+fn error(param: &'static str, message: impl Into<String>, help: impl Into<String>) -> BuildError {
+    BuildError { param, message: message.into(), help: help.into() }
+}

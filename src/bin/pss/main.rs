@@ -1,2 +1,60 @@
-//! The command line.
-fn main() {}
+//! The command line: arguments, progress, messages and exit codes. The only place with a clock, standard
+//! output and process state; everything else is the library's.
+
+mod args;
+mod console;
+mod load;
+mod probe;
+mod progress;
+mod render;
+mod stats;
+mod system;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use pss::diag::{Diagnostic, Fault};
+
+use args::{Args, Command, MessageFormat};
+use console::{Console, Failure};
+
+fn main() -> ExitCode {
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(e) => return ExitCode::from(misused(&e)),
+    };
+    let scene = match &args.command {
+        Command::Render(render) => &render.scene,
+        Command::Probe(probe) => &probe.scene,
+    };
+    let console = Console::new(scene.format);
+    console::keep_panics_quiet();
+    let threads = scene.threads;
+    let done = std::panic::catch_unwind(|| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|e| Failure::internal(format!("cannot start {threads} threads: {e}")))?;
+        pool.install(|| match &args.command {
+            Command::Render(args) => render::run(args, &console),
+            Command::Probe(args) => probe::run(args, &console),
+        })
+    });
+    let done = done.unwrap_or_else(|_| Err(Failure::internal("the program went wrong".to_owned())));
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => ExitCode::from(console.fail(&failure)),
+    }
+}
+
+/// Shows help, or what is wrong with the arguments, and gives the exit code.
+fn misused(e: &clap::Error) -> u8 {
+    if e.use_stderr() && args::asks_for_json(std::env::args_os()) {
+        let text = e.to_string();
+        let (message, help) = text.split_once("\n").unwrap_or((&text, ""));
+        let message = message.strip_prefix("error: ").unwrap_or(message);
+        let diagnostic = Diagnostic::error("E0001", message).help(help.trim()).fault(Fault::Usage);
+        return Console::new(MessageFormat::Json).fail(&Failure::from(diagnostic));
+    }
+    // Printing fails where the pipe is closed; the exit code says all that is left to say.
+    let _ = e.print();
+    if e.use_stderr() { Fault::Usage.exit_code() } else { 0 }
+}

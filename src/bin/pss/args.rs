@@ -1,0 +1,191 @@
+//! Arguments and their forms. What they mean is left to the commands.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::{Args as Group, Parser, Subcommand, ValueEnum};
+use glam::DVec3;
+use pss::geom::Ray;
+use pss::output::Format;
+
+/// Renders CSG scenes of scanned point clouds and analytic solids.
+#[derive(Parser, Debug)]
+#[command(name = "pss", version, max_term_width = 100)]
+pub struct Args {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Subcommand, Debug)]
+pub enum Command {
+    /// Make a picture of a scene
+    Render(RenderArgs),
+    /// List where rays go in and out of what a scene draws
+    Probe(ProbeArgs),
+}
+
+/// What every command that reads a scene takes.
+#[derive(Group, Debug)]
+pub struct SceneArgs {
+    /// The scene file; `-` for standard input
+    pub scene: PathBuf,
+    /// Set a parameter of the scene
+    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = define)]
+    pub define: Vec<(String, String)>,
+    /// Threads; 0 for all cores
+    #[arg(short, long, value_name = "N", default_value_t = 0, value_parser = threads)]
+    pub threads: usize,
+    /// How messages look on standard error
+    #[arg(long, value_enum, default_value_t = MessageFormat::Text)]
+    pub format: MessageFormat,
+    /// Let the scene read files below this folder too
+    #[arg(long, value_name = "DIR")]
+    pub allow_read: Vec<PathBuf>,
+    /// Which of the scene's cameras; the first if none is named
+    #[arg(long, value_name = "NAME")]
+    pub camera: Option<String>,
+    /// Size of the whole picture, pixels
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+}
+
+/// How messages look.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub enum MessageFormat {
+    /// For people
+    Text,
+    /// One JSON object a line
+    Json,
+}
+
+/// Arguments of `render`.
+#[derive(Group, Debug)]
+pub struct RenderArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Output, .png or .exr, or `-` for a PNG on standard output; the scene's name with .png if none is given
+    #[arg(short, long = "output", value_name = "FILE", value_parser = output)]
+    pub output: Vec<PathBuf>,
+    /// Rays a pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(pss::shot::settings::MAX_SAMPLES)))]
+    pub spp: Option<u32>,
+    /// The part to make, half-open, pixels from the top left
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = crop)]
+    pub crop: Option<[u32; 4]>,
+    /// Chooses the noise
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Say at the end what was done, on standard error
+    #[arg(long)]
+    pub stats: bool,
+    /// Write what was done to a JSON file
+    #[arg(long, value_name = "FILE")]
+    pub stats_json: Option<PathBuf>,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// How progress is shown on standard error
+    #[arg(long, value_enum, default_value_t = ProgressMode::Auto)]
+    pub progress: ProgressMode,
+}
+
+/// How progress is shown.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub enum ProgressMode {
+    /// A bar on a terminal, else nothing
+    Auto,
+    /// A line now and then
+    Plain,
+    /// One JSON object a second
+    Json,
+    /// Nothing
+    None,
+}
+
+/// Arguments of `probe`.
+#[derive(Group, Debug)]
+#[command(group = clap::ArgGroup::new("what").required(true).args(["pixel", "ray", "rays"]))]
+pub struct ProbeArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// The ray through a pixel's centre
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    pub pixel: Option<[u32; 2]>,
+    /// A ray: its origin and its direction
+    #[arg(long, value_name = "\"OX,OY,OZ DX,DY,DZ\"", value_parser = ray, allow_hyphen_values = true)]
+    pub ray: Option<Ray>,
+    /// A file of rays, six numbers a line, comma separated
+    #[arg(long, value_name = "FILE.csv")]
+    pub rays: Option<PathBuf>,
+    /// One line of JSON a ray
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Whether messages are asked for as JSON, for errors found before the arguments are understood.
+pub fn asks_for_json(args: impl Iterator<Item = OsString>) -> bool {
+    let args: Vec<OsString> = args.collect();
+    let pair = |w: &[OsString]| w[0] == "--format" && w[1] == "json";
+    args.iter().any(|a| a == "--format=json") || args.windows(2).any(pair)
+}
+
+/// The most threads that can be asked for: more than any machine has, few enough to start.
+const MAX_THREADS: usize = 4096;
+
+fn threads(text: &str) -> Result<usize, String> {
+    let n: usize = text.parse().map_err(|_| "not a whole number".to_owned())?;
+    if n <= MAX_THREADS { Ok(n) } else { Err(format!("at most {MAX_THREADS}")) }
+}
+
+fn define(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => Ok((name.trim().to_owned(), value.to_owned())),
+        _ => Err("write it as name=value".to_owned()),
+    }
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    match numbers(text, 'x') {
+        Ok(size) if !size.contains(&0) => Ok(size),
+        _ => Err("write it as WxH, such as 800x600".to_owned()),
+    }
+}
+
+fn crop(text: &str) -> Result<[u32; 4], String> {
+    let [x0, y0, x1, y1] = numbers(text, ',')?;
+    if x0 < x1 && y0 < y1 { Ok([x0, y0, x1, y1]) } else { Err("it holds no pixel".to_owned()) }
+}
+
+fn pixel(text: &str) -> Result<[u32; 2], String> {
+    numbers(text, ',')
+}
+
+fn numbers<const N: usize>(text: &str, separator: char) -> Result<[u32; N], String> {
+    let wrong = || format!("not {N} whole numbers with `{separator}` between them");
+    let list: Vec<u32> =
+        text.split(separator).map(|s| s.trim().parse()).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    list.try_into().map_err(|_| wrong())
+}
+
+fn output(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    if text == "-" || Format::of(&path).is_some() {
+        Ok(path)
+    } else {
+        Err("the name does not end in .png or .exr".to_owned())
+    }
+}
+
+/// A ray from six numbers with commas or spaces between them.
+pub fn ray(text: &str) -> Result<Ray, String> {
+    let wrong = || "not six numbers, ox,oy,oz dx,dy,dz".to_owned();
+    let parts = text.split(|c: char| c == ',' || c.is_whitespace()).filter(|s| !s.is_empty());
+    let list: Vec<f64> = parts.map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    let [ox, oy, oz, dx, dy, dz] = list[..] else { return Err(wrong()) };
+    let ray = Ray::new(DVec3::new(ox, oy, oz), DVec3::new(dx, dy, dz));
+    if ray.is_valid() { Ok(ray) } else { Err("a ray has finite numbers and a direction".to_owned()) }
+}

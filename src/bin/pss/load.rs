@@ -1,0 +1,125 @@
+//! From a scene's name to a prepared shot.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use pss::diag::{Diagnostic, Fault};
+use pss::prepare::{self, Options};
+use pss::shot::Shot;
+use pss::source::SourceMap;
+
+use crate::args::SceneArgs;
+use crate::console::{Console, Failure};
+
+/// The longest scene, bytes: parsing takes some seventy times as much memory.
+const MAX_SCENE: u64 = 16 << 20;
+
+/// A scene ready to trace.
+#[derive(Debug)]
+pub struct Loaded {
+    /// What is rendered.
+    pub shot: Shot,
+    /// All files read, the scene among them.
+    pub inputs: Vec<PathBuf>,
+    /// Reading and understanding the text.
+    pub parsing: Duration,
+    /// Building what it says.
+    pub preparing: Duration,
+}
+
+/// Reads and prepares a scene. `options` holds what the command has to say; what all commands share is filled
+/// in here.
+pub fn load(args: &SceneArgs, options: Options, quiet: bool, console: &Console) -> Result<Loaded, Failure> {
+    let start = Instant::now();
+    let mut sources = SourceMap::default();
+    let stdin = is_stdin(&args.scene);
+    let text = read_scene(&args.scene)?;
+    let name = if stdin { "<stdin>".to_owned() } else { args.scene.display().to_string() };
+    let path = (!stdin).then(|| args.scene.clone());
+    let file = sources.add(name, path, text);
+    let catalog = prepare::catalog();
+    let read = pss::lang::read(&mut sources, file, &catalog, &args.define);
+    let (scene, warnings) = match read {
+        Ok(read) => read,
+        Err(errors) => return Err(Failure::new(errors, sources)),
+    };
+    if !quiet {
+        console.show(&warnings, &sources);
+    }
+    let parsing = start.elapsed();
+    let start = Instant::now();
+    let options = Options {
+        size: args.size,
+        camera: args.camera.clone(),
+        scene_dir: if stdin { PathBuf::from(".") } else { folder(&args.scene) },
+        allow_read: args.allow_read.clone(),
+        ..options
+    };
+    let prepared = match prepare::prepare(&scene, &options) {
+        Ok(prepared) => prepared,
+        Err(errors) => return Err(Failure::new(errors, sources)),
+    };
+    if !quiet {
+        console.show(&prepared.warnings, &sources);
+    }
+    let texts = sources.files().filter_map(|f| f.path.clone());
+    let inputs = texts.chain(prepared.inputs).collect();
+    Ok(Loaded { shot: prepared.shot, inputs, parsing, preparing: start.elapsed() })
+}
+
+/// Whether the scene comes from standard input.
+pub fn is_stdin(scene: &Path) -> bool {
+    scene.as_os_str() == "-"
+}
+
+fn folder(scene: &Path) -> PathBuf {
+    let parent = scene.parent().filter(|p| !p.as_os_str().is_empty());
+    parent.unwrap_or(Path::new(".")).to_owned()
+}
+
+fn read_scene(path: &Path) -> Result<String, Failure> {
+    let bytes =
+        if is_stdin(path) { read_limited(io::stdin().lock(), MAX_SCENE) } else { read_file(path, MAX_SCENE) };
+    let missing = |e: io::Error| {
+        let message = format!("cannot read `{}`: {}", path.display(), reason(&e));
+        Failure::from(Diagnostic::error("E0601", message).fault(Fault::Missing))
+    };
+    let bytes = bytes.map_err(missing)?;
+    if MAX_SCENE < bytes.len() as u64 {
+        let message = format!("`{}` is longer than {} MiB", path.display(), MAX_SCENE >> 20);
+        return Err(Failure::from(Diagnostic::error("E0701", message)));
+    }
+    String::from_utf8(bytes).map_err(|e| {
+        let at = e.utf8_error().valid_up_to();
+        let message = format!("`{}` is not UTF-8 text: byte {at} is wrong", path.display());
+        Failure::from(Diagnostic::error("E0101", message))
+    })
+}
+
+/// Reads a regular file, up to one byte past a limit: opening anything else may wait for ever.
+pub fn read_file(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
+    let meta = fs::metadata(path)?;
+    if !meta.is_file() {
+        let kind = if meta.is_dir() { "it is a folder" } else { "it is not a regular file" };
+        return Err(io::Error::other(kind));
+    }
+    read_limited(File::open(path)?, limit)
+}
+
+/// Reads up to one byte past the limit, so that the caller can tell.
+fn read_limited(from: impl Read, limit: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    from.take(limit + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The system's reason, in words where they are known.
+pub fn reason(e: &io::Error) -> String {
+    match e.kind() {
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::PermissionDenied => "its permissions do not allow it".to_owned(),
+        _ => e.to_string(),
+    }
+}

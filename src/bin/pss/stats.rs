@@ -1,0 +1,140 @@
+//! What a render took, as a table and as JSON. The names in the JSON are a contract.
+
+use std::fmt::Write;
+use std::time::Duration;
+
+use pss::render::Rendered;
+use serde::Serialize;
+
+use crate::system;
+
+/// Time spent by stage.
+#[derive(Debug)]
+pub struct Stages {
+    /// Reading and understanding the text.
+    pub parsing: Duration,
+    /// Building what it says.
+    pub preparing: Duration,
+    /// Tracing.
+    pub rendering: Duration,
+    /// Writing files.
+    pub writing: Duration,
+}
+
+/// What a render took.
+#[derive(Serialize, Debug)]
+pub struct Stats {
+    wall_s: f64,
+    /// `None` where the system does not tell.
+    cpu_s: Option<f64>,
+    threads: usize,
+    /// `None` where the system does not tell.
+    peak_bytes: Option<u64>,
+    stages: StageSeconds,
+    rays: RayCounts,
+    pss: PssCounts,
+    csg: CsgCounts,
+}
+
+#[derive(Serialize, Debug)]
+struct StageSeconds {
+    parse: f64,
+    /// Clouds are read while the scene is prepared: their time is part of `prepare`.
+    load: f64,
+    prepare: f64,
+    render: f64,
+    write: f64,
+}
+
+#[derive(Serialize, Debug)]
+struct RayCounts {
+    camera: u64,
+    shadow: u64,
+    bounce: u64,
+}
+
+#[derive(Serialize, Debug)]
+struct PssCounts {
+    projections: u64,
+    patch_hits: u64,
+    crossings: u64,
+    certificate_failures: u64,
+    parity_repairs: u64,
+    caps: u64,
+}
+
+#[derive(Serialize, Debug)]
+struct CsgCounts {
+    leaf_queries: u64,
+    leaves_skipped: u64,
+    ties: u64,
+}
+
+impl Stats {
+    /// Gathers what is known; `wall` is the time since the start.
+    pub fn new(wall: Duration, stages: &Stages, rendered: &Rendered) -> Stats {
+        let (rays, counts) = (rendered.rays, rendered.counts);
+        Stats {
+            wall_s: wall.as_secs_f64(),
+            cpu_s: system::cpu_seconds(),
+            threads: rayon::current_num_threads(),
+            peak_bytes: system::peak_bytes(),
+            stages: StageSeconds {
+                parse: stages.parsing.as_secs_f64(),
+                load: 0.0,
+                prepare: stages.preparing.as_secs_f64(),
+                render: stages.rendering.as_secs_f64(),
+                write: stages.writing.as_secs_f64(),
+            },
+            rays: RayCounts { camera: rays.camera, shadow: rays.shadow, bounce: rays.bounce },
+            pss: PssCounts {
+                projections: counts.projections,
+                patch_hits: counts.patch_hits,
+                crossings: counts.crossings,
+                certificate_failures: counts.certificate_failures,
+                parity_repairs: counts.parity_repairs,
+                caps: counts.caps,
+            },
+            csg: CsgCounts {
+                leaf_queries: counts.leaf_queries,
+                leaves_skipped: counts.leaves_skipped,
+                ties: counts.ties,
+            },
+        }
+    }
+
+    /// One JSON object, a line end behind it.
+    pub fn json(&self) -> String {
+        // A struct of numbers and names always has a JSON form.
+        let json = serde_json::to_string_pretty(self).unwrap_or_else(|e| format!("\"{e}\""));
+        json + "\n"
+    }
+
+    /// A table for people: a line for each number.
+    pub fn table(&self) -> String {
+        let mut table = String::new();
+        if let Ok(serde_json::Value::Object(all)) = serde_json::to_value(self) {
+            for (name, value) in &all {
+                rows(&mut table, name, value);
+            }
+        }
+        table
+    }
+}
+
+fn rows(table: &mut String, name: &str, value: &serde_json::Value) {
+    match value {
+        serde_json::Value::Object(group) => {
+            group.iter().for_each(|(part, value)| rows(table, &format!("{name}.{part}"), value));
+        }
+        serde_json::Value::Number(n) if n.is_f64() => {
+            let seconds = n.as_f64().unwrap_or_default();
+            // Writing to a string cannot fail.
+            let _ = writeln!(table, "{name:<26} {seconds:>15.3}");
+        }
+        serde_json::Value::Null => {}
+        value => {
+            let _ = writeln!(table, "{name:<26} {:>15}", value.to_string());
+        }
+    }
+}

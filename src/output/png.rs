@@ -1,0 +1,64 @@
+//! PNG files: what a display shows of a film.
+
+use std::io;
+
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder, ImageError};
+
+use super::tone;
+use crate::film::Film;
+use crate::shot::settings::Tone;
+
+/// Writes 8-bit sRGB without alpha: the background is what the colour under it says.
+pub fn write_png(film: &Film, exposure: f64, tone: Tone, sink: &mut dyn io::Write) -> io::Result<()> {
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(film.rgba.len() * 3).map_err(|_| io::ErrorKind::OutOfMemory)?;
+    for [r, g, b, _] in &film.rgba {
+        bytes.extend(tone::display([*r, *g, *b], exposure, tone));
+    }
+    let mut remembering = Remembering { sink, failure: None };
+    let encoded = PngEncoder::new(&mut remembering).write_image(
+        &bytes,
+        film.size[0],
+        film.size[1],
+        ExtendedColorType::Rgb8,
+    );
+    if let Some(e) = remembering.failure {
+        return Err(e);
+    }
+    encoded.map_err(|e| match e {
+        ImageError::IoError(e) => e,
+        e => io::Error::other(e),
+    })
+}
+
+/// Keeps the first failure: the encoder writes the end of the file when it is dropped and says nothing if
+/// that fails.
+struct Remembering<'a> {
+    sink: &'a mut dyn io::Write,
+    failure: Option<io::Error>,
+}
+
+impl Remembering<'_> {
+    fn remember<T>(&mut self, result: io::Result<T>) -> io::Result<T> {
+        result.map_err(|e| {
+            let kind = e.kind();
+            if kind != io::ErrorKind::Interrupted && self.failure.is_none() {
+                self.failure = Some(e);
+            }
+            kind.into()
+        })
+    }
+}
+
+impl io::Write for Remembering<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let result = self.sink.write(bytes);
+        self.remember(result)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let result = self.sink.flush();
+        self.remember(result)
+    }
+}

@@ -1,0 +1,127 @@
+//! What a ray from the eye brings back, and the pixels of a tile made of it.
+
+use super::layers;
+use super::lighting::{Lights, open_sky};
+use super::sampler::{PixelSampler, Sample};
+use super::scenery::{Rays, Scenery, Seen, Tracer};
+use super::tiles::Tile;
+use super::{RenderError, View};
+use crate::film::Film;
+use crate::geom::{Interval, Ray};
+use crate::shot::settings::Integrator;
+use crate::solid::Counts;
+
+/// Everything that painting a pixel needs.
+pub struct Painter<'a, S> {
+    scenery: &'a S,
+    view: View<'a>,
+    lights: Lights,
+    /// Distances between which the picture of distances goes from white to black, world length.
+    depths: Interval,
+}
+
+impl<'a, S: Scenery> Painter<'a, S> {
+    /// Gets ready.
+    pub fn new(scenery: &'a S, view: &View<'a>) -> Painter<'a, S> {
+        let depths = match view.settings.integrator {
+            Integrator::Depth => depths(scenery, view),
+            _ => Interval::EMPTY,
+        };
+        Painter { scenery, view: *view, lights: Lights::new(view.lights), depths }
+    }
+
+    /// Paints a tile.
+    pub fn tile(&self, tile: &Tile) -> Result<(Film, Rays, Counts), RenderError> {
+        let mut film = Film::new(tile.size, &self.view.settings.aov)?;
+        let mut tracer = Tracer::new(self.scenery);
+        let mut pixel = 0;
+        for y in tile.y..tile.y + tile.size[1] {
+            for x in tile.x..tile.x + tile.size[0] {
+                self.pixel(&mut tracer, x, y, pixel, &mut film);
+                pixel += 1;
+            }
+        }
+        Ok((film, tracer.rays, tracer.scratch.counts))
+    }
+
+    /// Paints a pixel of the whole picture to a place of a film.
+    fn pixel(&self, tracer: &mut Tracer<S>, x: u32, y: u32, pixel: usize, film: &mut Film) {
+        let settings = self.view.settings;
+        let ray_at =
+            |dx: f64, dy: f64| self.view.camera.ray(f64::from(x) + dx, f64::from(y) + dy, settings.size);
+        let centre = (!film.layers.is_empty()).then(|| {
+            let ray = ray_at(0.5, 0.5);
+            let seen = tracer.see(&ray);
+            if let Some(seen) = &seen {
+                layers::keep(film, pixel, &ray, seen, self.albedo(seen));
+            }
+            seen
+        });
+        let mut sum = [0.0_f32; 4];
+        for ([dx, dy], sample) in PixelSampler::new(settings.seed, x, y, settings.samples).samples() {
+            let ray = ray_at(dx, dy);
+            // A single sample goes through the centre as well.
+            let seen = centre.filter(|_| settings.samples == 1).unwrap_or_else(|| tracer.see(&ray));
+            let value = self.value(tracer, &ray, seen.as_ref(), sample);
+            for (s, v) in sum.iter_mut().zip(value) {
+                *s += v;
+            }
+        }
+        film.rgba[pixel] = sum.map(|s| s / settings.samples as f32);
+    }
+
+    /// The colour and coverage that one ray brings back.
+    fn value(&self, tracer: &mut Tracer<S>, ray: &Ray, seen: Option<&Seen>, sample: Sample) -> [f32; 4] {
+        let integrator = self.view.settings.integrator;
+        let Some(seen) = seen else {
+            return match self.lights.sky {
+                Some([r, g, b]) if integrator == Integrator::Direct => [r, g, b, 1.0],
+                _ => [0.0; 4],
+            };
+        };
+        let [r, g, b] = match integrator {
+            Integrator::Direct => self.direct(tracer, ray, seen, sample),
+            Integrator::Ao => [f32::from(u8::from(open_sky(tracer, seen, sample))); 3],
+            Integrator::Normals => {
+                let normal = if seen.hit.sheet { seen.normal } else { seen.surface.normal };
+                (0.5 * normal + 0.5).as_vec3().to_array()
+            }
+            Integrator::Depth => [self.brightness(layers::distance(ray, seen)); 3],
+            Integrator::Flat => self.albedo(seen),
+        };
+        [r, g, b, 1.0]
+    }
+
+    /// Light from the lights that the surface sends to the eye.
+    fn direct(&self, tracer: &mut Tracer<S>, ray: &Ray, seen: &Seen, sample: Sample) -> [f32; 3] {
+        let albedo = self.albedo(seen);
+        if albedo == [0.0; 3] {
+            return albedo;
+        }
+        let light = self.lights.arriving(tracer, ray, seen, sample);
+        std::array::from_fn(|i| albedo[i] * light[i])
+    }
+
+    fn albedo(&self, seen: &Seen) -> [f32; 3] {
+        self.view.materials.get(seen.surface.material as usize).copied().unwrap_or_default().albedo()
+    }
+
+    /// 1 at the near end of what is drawn, 0 at the far end.
+    fn brightness(&self, distance: f64) -> f32 {
+        ((self.depths.hi - distance) / self.depths.length()).clamp(0.0, 1.0) as f32
+    }
+}
+
+/// The distances from the eye between which the bounds of a scenery lie. Where nothing is bounded, or the
+/// bounds are a point, all surfaces are alike.
+fn depths<S: Scenery>(scenery: &S, view: &View) -> Interval {
+    let bounds = scenery.bounds();
+    let all_white = Interval::new(0.0, f64::MAX);
+    if bounds.is_empty() || !bounds.is_finite() {
+        return all_white;
+    }
+    let eye = view.camera.eye();
+    let farthest = bounds.corners().map(|c| c.distance(eye)).into_iter().fold(0.0, f64::max);
+    let depths = Interval::new(bounds.distance_squared(eye).sqrt(), farthest);
+    if 0.0 < depths.length() { depths } else { all_white }
+}
