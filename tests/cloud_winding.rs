@@ -12,8 +12,7 @@ use pss::num::hash::Stream;
 fn oriented(points: &[DVec3], normals: &[DVec3], opening: f64) -> Winding {
     let table = Neighbours::new(points).table(AREA_NEIGHBOURS);
     let widths = spacing::widths(&spacing::spacing(points, &table), &table);
-    let reach: Vec<f64> = widths.iter().map(|h| 0.5 * h).collect();
-    Winding::new(points, normals, &areas(points, normals, &reach, &table), opening)
+    Winding::new(points, normals, &areas(points, normals, &widths, &table), opening)
 }
 
 #[test]
