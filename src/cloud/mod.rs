@@ -6,6 +6,7 @@ mod duplicates;
 mod error;
 mod extent;
 mod groups;
+pub mod holes;
 mod magic;
 pub mod neighbours;
 pub mod normals;
