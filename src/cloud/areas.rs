@@ -15,14 +15,14 @@ const CORNERS: usize = 16;
 /// Corners at most: each neighbour adds one.
 const MOST: usize = CORNERS + AREA_NEIGHBOURS + 1;
 
-/// The area of each sample's Voronoi cell in its tangent plane, within a disc of radius `reach[i]` around it (a
+/// The area of each sample's Voronoi cell in its tangent plane, within a disc of radius half its width (a
 /// regular 16-gon of the disc's area); world length squared.
 ///
-/// Cells of samples inside the surface fill it without gap. At a rim a cell ends at the disc: take half a
-/// width, 1.25 spacings in a random sampling, which cuts 1 % off the cells there and adds less than a spacing
-/// beyond a rim. Normals need no sign; where one is zero the disc's area is taken, cut to the spacing's.
-pub fn areas(points: &[DVec3], normals: &[DVec3], reach: &[f64], table: &Table) -> Vec<f64> {
-    let area = |i: usize| cell(points, normals[i], reach[i], i, table.row(i));
+/// Cells of samples inside the surface fill it without gap. At a rim a cell ends at the disc: half a width is
+/// 1.25 spacings in a random sampling, which cuts 1 % off the cells there and adds less than a spacing
+/// beyond a rim. Normals need no sign.
+pub fn areas(points: &[DVec3], normals: &[DVec3], widths: &[f64], table: &Table) -> Vec<f64> {
+    let area = |i: usize| cell(points, normals[i], 0.5 * widths[i], i, table.row(i));
     (0..points.len()).into_par_iter().map(area).collect()
 }
 
@@ -111,7 +111,7 @@ mod tests {
         let points: Vec<DVec3> =
             (0..49).map(|i| DVec3::new(f64::from(i % 7), f64::from(i / 7), 0.0)).collect();
         let table = Neighbours::new(&points).table(AREA_NEIGHBOURS);
-        let found = areas(&points, &[DVec3::Z; 49], &[1.25; 49], &table);
+        let found = areas(&points, &[DVec3::Z; 49], &[2.5; 49], &table);
         assert!((found[24] - 1.0).abs() < 1e-14, "{}", found[24]);
         assert!(found[0] < 3.1 && 1.5 < found[0], "a corner: {}", found[0]);
         let disc = Polygon::disc(2.0).area();

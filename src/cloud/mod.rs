@@ -5,11 +5,16 @@ mod areas;
 mod duplicates;
 mod error;
 mod extent;
+mod groups;
+pub mod holes;
 mod magic;
 pub mod neighbours;
+pub mod normals;
 mod order;
 pub mod ply;
+mod samples;
 pub mod spacing;
+mod strays;
 mod tree;
 pub mod winding;
 
@@ -19,6 +24,7 @@ pub use areas::{AREA_NEIGHBOURS, areas};
 pub use duplicates::merge_duplicates;
 pub use error::{CloudError, CloudFault};
 pub use extent::check_extent;
+pub use samples::{NormalSource, SampleOptions, Samples};
 
 /// Points as a file gives them, in the file's own units.
 #[derive(Clone, Debug, Default, PartialEq)]

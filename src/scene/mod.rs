@@ -64,6 +64,46 @@ pub struct ShapeNode {
     pub at: Span,
 }
 
+impl Shape {
+    /// A shape of its own.
+    pub fn new(kind: ShapeKind, at: Span) -> Shape {
+        Shape(Arc::new(ShapeNode { kind, at }))
+    }
+}
+
+impl ShapeKind {
+    /// Moves the shapes below this node into `out`.
+    fn take_children(&mut self, out: &mut Vec<Shape>) {
+        let nothing = ShapeKind::Boolean { op: BooleanOp::Union, operands: Vec::new() };
+        match std::mem::replace(self, nothing) {
+            ShapeKind::Leaf { call, .. } => {
+                out.extend(call.args.into_values().filter_map(|a| match a.value {
+                    Value::Shape(shape) => Some(shape),
+                    _ => None,
+                }))
+            }
+            ShapeKind::Boolean { operands, .. } => out.extend(operands.into_iter().map(|o| o.shape)),
+            ShapeKind::Transform { child, .. }
+            | ShapeKind::Fit { child, .. }
+            | ShapeKind::With { child, .. }
+            | ShapeKind::Close { child, .. } => out.push(child),
+        }
+    }
+}
+
+/// Without recursion: a scene may nest operators deeper than the stack.
+impl Drop for ShapeNode {
+    fn drop(&mut self) {
+        let mut open = Vec::new();
+        self.kind.take_children(&mut open);
+        while let Some(shape) = open.pop() {
+            if let Some(mut node) = Arc::into_inner(shape.0) {
+                node.kind.take_children(&mut open);
+            }
+        }
+    }
+}
+
 /// Kinds of node.
 #[derive(Debug, Serialize, Deserialize)]
 pub enum ShapeKind {

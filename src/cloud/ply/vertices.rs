@@ -25,11 +25,11 @@ pub fn read<R: BufRead>(input: &mut Input<R>, header: &Header) -> Result<Cloud, 
         let message = format!("{} points are more than the limit of {POINT_LIMIT}", vertex.count);
         return Err(CloudError::bad(message).at_line(vertex.line).help("thin the cloud"));
     }
-    fits(input, header, at)?;
+    let most = fits(input, header, at)?;
     for element in &header.elements[..at] {
         skip(input, header.encoding, element)?;
     }
-    columns.reserve(vertex.count as usize);
+    columns.reserve(vertex.count.min(most) as usize);
     match header.encoding {
         Encoding::Ascii => ascii_rows(input, vertex, &mut columns)?,
         encoding => binary_rows(input, vertex, encoding, &mut columns)?,
@@ -41,26 +41,31 @@ pub fn read<R: BufRead>(input: &mut Input<R>, header: &Header) -> Result<Cloud, 
     Ok(cloud)
 }
 
-/// Compares the counts with the length of the file, before anything is allocated or walked through.
-fn fits<R: BufRead>(input: &Input<R>, header: &Header, vertex: usize) -> Result<(), CloudError> {
+/// Compares the counts with the length of the file, before anything is walked through; how many points the file
+/// can hold at most.
+fn fits<R: BufRead>(input: &Input<R>, header: &Header, vertex: usize) -> Result<u64, CloudError> {
     // The last row of an ASCII file needs no end of line.
-    let left = u128::from(input.left()) + u128::from(header.encoding == Encoding::Ascii);
-    let mut needed = 0u128;
-    for element in &header.elements[..=vertex] {
-        needed += u128::from(element.count) * u128::from(element.least_row(header.encoding));
-        if left < needed {
+    let mut left = u128::from(input.left()) + u128::from(header.encoding == Encoding::Ascii);
+    for element in &header.elements[..vertex] {
+        let needed = u128::from(element.count) * u128::from(element.least_row(header.encoding));
+        left = left.checked_sub(needed).ok_or_else(|| {
+            let (count, name, bytes) = (element.count, shown(&element.name), input.left());
             let message = format!(
-                "truncated: expected {} rows of `{}`, but the file has only {} bytes after its header",
-                element.count,
-                shown(&element.name),
-                input.left()
+                "truncated: expected {count} rows of `{name}`, but only {bytes} bytes follow the header"
             );
-            return Err(CloudError::bad(message)
+            CloudError::bad(message)
                 .at_line(element.line)
-                .help("the file is cut short, or its count is wrong"));
-        }
+                .help("the file is cut short, or its count is wrong")
+        })?;
     }
-    Ok(())
+    let element = &header.elements[vertex];
+    let most = left as u64 / element.least_row(header.encoding);
+    let rows_are_equal =
+        header.encoding != Encoding::Ascii && element.properties.iter().all(|p| p.list.is_none());
+    if most < element.count && rows_are_equal && vertex == 0 {
+        return Err(input.truncated(expected(element, most), false));
+    }
+    Ok(most)
 }
 
 fn skip<R: BufRead>(input: &mut Input<R>, encoding: Encoding, element: &Element) -> Result<(), CloudError> {

@@ -1,0 +1,120 @@
+//! Rims of the holes in a cloud. How a hole is closed is left to the surface.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::Samples;
+use super::areas::tangents;
+use super::groups::Groups;
+use super::neighbours::{Near, Neighbours};
+use crate::geom::Aabb;
+
+/// Radius of an empty disc that makes a hole, per spacing: one width. The weights of both sides of anything
+/// narrower span it; and in a random sampling (Poisson) a disc of this size is empty with probability
+/// `exp(-4 pi)`, 3.5e-6.
+const DISC: f64 = 2.0;
+
+/// Samples whose spacings are asked for the local one: at a rim the own spacing is 1.4 times too large.
+const AROUND: usize = 30;
+
+/// Rims of fewer samples are chance: an empty disc in a random sampling touches three to five, a round hole of
+/// twice its size has two dozen around it.
+const LEAST_RIM: usize = 10;
+
+/// A hole, or the outer rim of a sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hole {
+    /// Its samples, ascending.
+    pub rim: Vec<u32>,
+    /// Around them.
+    pub bounds: Aabb,
+    /// The largest extent of the rim along an axis, world length.
+    pub width: f64,
+}
+
+/// The holes of a cloud, in the order of their first samples: groups of at least [`LEAST_RIM`] samples,
+/// each touched by an empty disc of [`DISC`] spacings in its tangent plane (the rim of the alpha shape,
+/// Edelsbrunner and Muecke 1994), linked where one disc may touch both.
+pub fn holes(samples: &Samples) -> Vec<Hole> {
+    let tree = Neighbours::new(&samples.points);
+    let touch = |(near, arcs): &mut (Vec<Near>, Vec<[f64; 2]>), i: usize| {
+        let radius = disc_radius(samples, &tree, i, near);
+        tree.within(samples.points[i], 2.0 * radius, near);
+        is_open(samples, i, near, radius, arcs).then_some((i as u32, radius))
+    };
+    let open: Vec<Option<(u32, f64)>> =
+        (0..samples.len()).into_par_iter().map_init(Default::default, touch).collect();
+    let rim: Vec<(u32, f64)> = open.into_iter().flatten().collect();
+    let labels = linked(samples, &rim).labels();
+    let mut order: Vec<usize> = (0..rim.len()).collect();
+    order.sort_unstable_by_key(|&at| (labels[at], at));
+    let pieces = order.chunk_by(|&a, &b| labels[a] == labels[b]);
+    pieces.filter_map(|piece| hole(samples, piece.iter().map(|&at| rim[at]).collect())).collect()
+}
+
+/// Groups of rim samples at most a disc's diameter apart.
+fn linked(samples: &Samples, rim: &[(u32, f64)]) -> Groups {
+    let points: Vec<DVec3> = rim.iter().map(|r| samples.points[r.0 as usize]).collect();
+    let tree = Neighbours::new(&points);
+    let mut groups = Groups::new(rim.len());
+    let mut near = Vec::new();
+    for (at, p) in points.iter().enumerate() {
+        tree.within(*p, 2.0 * rim[at].1, &mut near);
+        for Near { distance_squared, index } in &near {
+            if *distance_squared <= 4.0 * rim[*index as usize].1.powi(2) {
+                groups.join(at, *index as usize);
+            }
+        }
+    }
+    groups
+}
+
+fn hole(samples: &Samples, rim: Vec<(u32, f64)>) -> Option<Hole> {
+    let bounds = Aabb::of_points(rim.iter().map(|r| samples.points[r.0 as usize]));
+    let width = bounds.size().max_element();
+    let mut radii: Vec<f64> = rim.iter().map(|r| r.1).collect();
+    radii.sort_unstable_by(f64::total_cmp);
+    let is_wide = 2.0 * radii[radii.len() / 2] <= width;
+    let rim: Vec<u32> = rim.into_iter().map(|r| r.0).collect();
+    (LEAST_RIM <= rim.len() && is_wide).then_some(Hole { rim, bounds, width })
+}
+
+/// [`DISC`] times the median spacing around a sample.
+fn disc_radius(samples: &Samples, tree: &Neighbours, i: usize, near: &mut Vec<Near>) -> f64 {
+    tree.nearest(samples.points[i], AROUND + 1, near);
+    let mut around = [0.0; AROUND + 1];
+    near.iter().zip(&mut around).for_each(|(n, s)| *s = samples.spacing[n.index as usize]);
+    let around = &mut around[..near.len()];
+    around.sort_unstable_by(f64::total_cmp);
+    DISC * around[around.len() / 2]
+}
+
+/// Whether some disc of `radius` in the tangent plane of sample `i`, its edge on the sample, holds none of the
+/// samples of its side of the surface. One at `d` is in the discs whose centre is seen within `acos(|d| / 2 radius)`
+/// of its direction: the question is whether these arcs leave a gap.
+fn is_open(samples: &Samples, i: usize, near: &[Near], radius: f64, arcs: &mut Vec<[f64; 2]>) -> bool {
+    let normal = samples.normals[i];
+    let (u, v) = tangents(normal);
+    arcs.clear();
+    for n in near.iter().map(|n| n.index as usize).filter(|&n| n != i && 0.0 < samples.normals[n].dot(normal))
+    {
+        let d = samples.points[n] - samples.points[i];
+        let (x, y) = (d.dot(u), d.dot(v));
+        let half = (x.hypot(y) / (2.0 * radius)).min(1.0).acos();
+        let from = y.atan2(x) - half;
+        let from = if from < -PI { from + TAU } else { from };
+        arcs.push([from, from + 2.0 * half]);
+    }
+    arcs.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+    // What the last arcs cover beyond the end of the circle.
+    let mut covered = arcs.iter().map(|arc| arc[1] - TAU).fold(-PI, f64::max);
+    for arc in arcs.iter() {
+        if covered < arc[0] {
+            return true;
+        }
+        covered = covered.max(arc[1]);
+    }
+    covered < PI
+}

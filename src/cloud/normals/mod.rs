@@ -1,0 +1,102 @@
+//! Normals of the samples: kept from the file where it has them, else estimated and oriented; in both cases
+//! checked by what neighbours and the winding number say.
+
+mod estimate;
+mod improve;
+mod orient;
+
+use glam::DVec3;
+
+use super::neighbours::Table;
+
+pub use estimate::{NORMAL_NEIGHBOURS, estimate};
+pub use improve::improve;
+pub use orient::{agreement, orient};
+
+/// Above this share of neighbours with opposed normals those of a file are improved by the winding number.
+/// Scans made with care have below 0.3 %; thin walls and creases make some of it.
+const DOUBTFUL: f64 = 0.01;
+
+/// A surface counts as closed where the vector sum of its areas is below this share of their sum: it is
+/// zero for a closed one (divergence theorem), one for a flat sheet, one half for a hemisphere.
+const CLOSED: f64 = 0.1;
+
+/// Rounds of improvement at most; in tests with a fifth of the normals flipped three were enough.
+const ROUNDS: usize = 6;
+
+/// Unit normals with their sign, and what was done.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Oriented {
+    /// One a sample.
+    pub normals: Vec<DVec3>,
+    /// Share of the pairs of near neighbours whose normals are opposed.
+    pub opposed: f64,
+    /// What was mended, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// What normals are made from.
+#[derive(Clone, Copy)]
+pub struct Scene<'a> {
+    /// Positions.
+    pub points: &'a [DVec3],
+    /// Nearest samples of each, at least [`NORMAL_NEIGHBOURS`] where there are so many.
+    pub table: &'a Table,
+    /// Width of each sample, world length.
+    pub widths: &'a [f64],
+}
+
+/// Estimates all normals and gives them signs.
+pub fn from_points(scene: Scene<'_>) -> Oriented {
+    let mut normals = estimate(scene.points, scene.table);
+    let areas = scene.areas(&normals);
+    orient(scene, &areas, &mut normals);
+    let mut notes = Vec::new();
+    let flips = improve(scene, &areas, &mut normals, ROUNDS);
+    if 0 < flips {
+        notes.push(format!("{flips} estimated normals were turned by the winding number"));
+    }
+    let opposed = agreement(&normals, scene.table);
+    Oriented { normals, opposed, notes }
+}
+
+/// Keeps given unit normals (zero where missing), estimates the missing ones, turns single ones that contradict
+/// the rest, and turns all where a closed cloud is inside out.
+pub fn from_file(scene: Scene<'_>, given: Vec<DVec3>) -> Oriented {
+    if given.iter().all(|n| *n == DVec3::ZERO) {
+        return from_points(scene);
+    }
+    let mut normals = given;
+    let mut notes = Vec::new();
+    let missing = orient::fill_missing(scene, &mut normals);
+    if 0 < missing {
+        notes.push(format!("{missing} missing normals were estimated"));
+    }
+    let mut opposed = agreement(&normals, scene.table);
+    let areas = scene.areas(&normals);
+    if DOUBTFUL < opposed {
+        let share = 100.0 * opposed;
+        notes.push(format!("{share:.1} % of neighbouring samples have opposed normals"));
+        let flips = improve(scene, &areas, &mut normals, ROUNDS);
+        notes.push(format!("{flips} normals were turned by the winding number"));
+        opposed = agreement(&normals, scene.table);
+    }
+    if scene.is_inside_out(&areas, &normals) {
+        normals.iter_mut().for_each(|n| *n = -*n);
+        notes.push("all normals point inward and were turned".to_string());
+    }
+    Oriented { normals, opposed, notes }
+}
+
+impl Scene<'_> {
+    fn areas(&self, normals: &[DVec3]) -> Vec<f64> {
+        super::areas(self.points, normals, self.widths, self.table)
+    }
+
+    /// Whether the cloud is closed and its signed volume `sum a p.n / 3` is negative.
+    fn is_inside_out(&self, areas: &[f64], normals: &[DVec3]) -> bool {
+        let all: Vec<u32> = (0..self.points.len() as u32).collect();
+        let shape = orient::Shape::of(self.points, normals, areas, &all);
+        shape.vector_area.length() < CLOSED * shape.area && shape.volume < 0.0
+    }
+}

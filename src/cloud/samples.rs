@@ -1,0 +1,146 @@
+//! What a surface is made from: distinct points with oriented normals and widths, in an order that keeps
+//! neighbours together.
+
+use glam::DVec3;
+
+use super::neighbours::{Neighbours, Table};
+use super::normals::{self, NORMAL_NEIGHBOURS, Oriented, Scene};
+use super::winding::Winding;
+use super::{
+    AREA_NEIGHBOURS, Cloud, CloudError, areas, check_extent, merge_duplicates, order, spacing, strays,
+};
+use crate::geom::Aabb;
+
+/// Neighbours of the table that everything shares.
+const NEIGHBOURS: usize =
+    if NORMAL_NEIGHBOURS < AREA_NEIGHBOURS { AREA_NEIGHBOURS } else { NORMAL_NEIGHBOURS };
+
+/// Where normals come from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum NormalSource {
+    /// The file, where it has them; else they are estimated.
+    #[default]
+    File,
+    /// Always estimated.
+    Estimate,
+}
+
+/// How samples are made.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct SampleOptions {
+    /// Multiplies the widths.
+    pub smoothing: f64,
+    /// Replaces the widths, world length.
+    pub width: Option<f64>,
+    /// Where normals come from.
+    pub normals: NormalSource,
+    /// Whether samples that carry no surface are kept.
+    pub keep_strays: bool,
+}
+
+impl Default for SampleOptions {
+    fn default() -> SampleOptions {
+        SampleOptions { smoothing: 1.0, width: None, normals: NormalSource::File, keep_strays: false }
+    }
+}
+
+/// Samples of a surface, in Morton order; no two at one position. All but `notes` is a function of the set
+/// of points, not of their order in the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Samples {
+    /// Positions.
+    pub points: Vec<DVec3>,
+    /// Unit normals, outward.
+    pub normals: Vec<DVec3>,
+    /// Width of each sample's weight, world length.
+    pub widths: Vec<f64>,
+    /// Root of the area of each sample by its six nearest, world length.
+    pub spacing: Vec<f64>,
+    /// Linear colours, where the file has them.
+    pub colors: Option<Vec<[f32; 3]>>,
+    /// Share of the pairs of near samples whose normals are opposed; above 0.01 the cloud is no solid to trust.
+    pub opposed: f64,
+    /// What was dropped or mended on the way, one sentence each.
+    pub notes: Vec<String>,
+}
+
+impl Samples {
+    /// Merges, sorts and measures the points of a cloud. Fails where they carry no surface, and where an option is
+    /// no positive number.
+    pub fn new(cloud: Cloud, options: &SampleOptions) -> Result<Samples, CloudError> {
+        check_options(options)?;
+        check_extent(&cloud.points)?;
+        let mut cloud = order::sort_morton(merge_duplicates(cloud));
+        let mut measured = Measured::new(&cloud.points);
+        if !options.keep_strays {
+            let stray = strays::strays(&cloud.points, &measured.widths, &measured.table);
+            let kept: Vec<u32> = (0..).zip(&stray).filter(|(_, stray)| !**stray).map(|(i, _)| i).collect();
+            let gone = stray.len() - kept.len();
+            if 0 < gone {
+                cloud = order::select(cloud, &kept);
+                cloud.notes.push(format!(
+                    "{gone} stray points, far from groups of {} or more, were dropped",
+                    strays::LEAST_GROUP
+                ));
+                check_extent(&cloud.points)?;
+                measured = Measured::new(&cloud.points);
+            }
+        }
+        let Cloud { points, normals, colors, mut notes } = cloud;
+        let Measured { table, spacing, widths } = measured;
+        let scene = Scene { points: &points, table: &table, widths: &widths };
+        let given = normals.filter(|_| options.normals == NormalSource::File);
+        let oriented = given.map_or_else(|| normals::from_points(scene), |n| normals::from_file(scene, n));
+        let Oriented { normals, opposed, notes: more } = oriented;
+        notes.extend(more);
+        let widths = widths.iter().map(|h| options.width.unwrap_or(*h) * options.smoothing).collect();
+        Ok(Samples { points, normals, widths, spacing, colors, opposed, notes })
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Whether there are none; never so for samples that [`Samples::new`] made.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// The box around the points.
+    pub fn bounds(&self) -> Aabb {
+        Aabb::of_points(self.points.iter().copied())
+    }
+
+    /// The winding number of the samples, at the opening of [`Winding::OPENING`].
+    pub fn winding(&self) -> Winding {
+        let measured = Measured::new(&self.points);
+        let areas = areas(&self.points, &self.normals, &measured.widths, &measured.table);
+        Winding::new(&self.points, &self.normals, &areas, Winding::OPENING)
+    }
+}
+
+/// What depends on positions alone.
+struct Measured {
+    table: Table,
+    spacing: Vec<f64>,
+    widths: Vec<f64>,
+}
+
+impl Measured {
+    fn new(points: &[DVec3]) -> Measured {
+        let table = Neighbours::new(points).table(NEIGHBOURS);
+        let spacing = spacing::spacing(points, &table);
+        let widths = spacing::widths(&spacing, &table);
+        Measured { table, spacing, widths }
+    }
+}
+
+fn check_options(options: &SampleOptions) -> Result<(), CloudError> {
+    for (name, value) in [("smoothing", Some(options.smoothing)), ("h", options.width)] {
+        if value.is_some_and(|v| !v.is_finite() || v <= 0.0) {
+            return Err(CloudError::bad(format!("`{name}` must be a positive number")));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,183 @@
+//! Which argument is which: by place, by name, missing, unknown, given twice. What a value must be is left
+//! to `check` and to the builtins themselves.
+
+use super::ast::{Args, Expr};
+use super::value::{Eval, Located};
+use crate::diag::{Diagnostic, nearest};
+use crate::scene::{Decl, Kind};
+use crate::source::Span;
+
+/// An argument that may be given.
+#[derive(Clone, Copy, Debug)]
+pub struct Formal {
+    /// The name before the colon.
+    pub name: &'static str,
+    /// Whether it may be given by place.
+    pub by_place: bool,
+    /// Whether the call is wrong without it.
+    pub required: bool,
+}
+
+impl Formal {
+    /// A needed argument, by place or by name.
+    pub const fn place(name: &'static str) -> Formal {
+        Formal { name, by_place: true, required: true }
+    }
+
+    /// A needed argument, by name.
+    pub const fn named(name: &'static str) -> Formal {
+        Formal { name, by_place: false, required: true }
+    }
+
+    /// The same, but it may be left out.
+    pub const fn optional(self) -> Formal {
+        Formal { required: false, ..self }
+    }
+}
+
+/// The formal arguments of a declaration.
+pub fn formals(decl: &Decl) -> Vec<Formal> {
+    decl.params.iter().map(|p| Formal { name: p.name, by_place: p.by_place, required: p.required }).collect()
+}
+
+/// How a call is written: `sphere(r:, at:)`, arguments by place without a colon.
+pub fn signature(word: &str, formals: &[Formal]) -> String {
+    let one = |f: &Formal| if f.by_place { f.name.to_owned() } else { format!("{}:", f.name) };
+    format!("{word}({})", formals.iter().map(one).collect::<Vec<_>>().join(", "))
+}
+
+/// What is called and where.
+#[derive(Clone, Copy)]
+pub struct Callee<'a> {
+    /// The word, with its point for a method.
+    pub word: &'a str,
+    /// The place of the whole call.
+    pub at: Span,
+    /// What it takes.
+    pub formals: &'a [Formal],
+}
+
+impl<'a> Callee<'a> {
+    fn signature(&self) -> String {
+        signature(self.word, self.formals)
+    }
+
+    /// The expression of each formal argument; the one named `known` was read already.
+    pub fn bind<'e>(&self, args: &'e Args, known: &str) -> Eval<Vec<Option<&'e Expr>>> {
+        let mut bound: Vec<Option<&Expr>> = vec![None; self.formals.len()];
+        let mut places = (0..self.formals.len()).filter(|i| self.formals[*i].by_place);
+        for arg in args.list.iter().filter(|a| a.name.as_ref().is_none_or(|n| n.text != known)) {
+            let i = match &arg.name {
+                Some(name) => self.formals.iter().position(|f| f.name == name.text).ok_or_else(|| {
+                    let known = nearest(&name.text, self.formals.iter().map(|f| f.name));
+                    let told = format!("`{}` has no argument `{}`", self.word, name.text);
+                    Diagnostic::error("E0403", told).at(name.at, "unknown argument").help(match known {
+                        Some(known) => format!("did you mean `{known}`? It is `{}`", self.signature()),
+                        None => format!("it is `{}`", self.signature()),
+                    })
+                })?,
+                None => places.next().ok_or_else(|| self.too_many(arg.value.at))?,
+            };
+            if let Some(first) = bound[i].replace(&arg.value) {
+                let told = format!("`{}` is given twice", self.formals[i].name);
+                return Err(Diagnostic::error("E0405", told)
+                    .at(arg.value.at, "the second time")
+                    .at(first.at, "the first time")
+                    .help("remove one of them")
+                    .into());
+            }
+        }
+        match self.formals.iter().zip(&bound).find(|(f, b)| f.required && b.is_none()) {
+            Some((missing, _)) => Err(self.missing(missing.name).into()),
+            None => Ok(bound),
+        }
+    }
+
+    /// The error that a needed argument was left out.
+    pub fn missing(&self, name: &str) -> Diagnostic {
+        Diagnostic::error("E0404", format!("`{}` needs `{name}`", self.word))
+            .at(self.at, format!("`{name}` is missing"))
+            .help(format!("it is `{}`", self.signature()))
+    }
+
+    fn too_many(&self, at: Span) -> Diagnostic {
+        let by_place = self.formals.iter().filter(|f| f.by_place).count();
+        let told = match by_place {
+            0 => format!("the arguments of `{}` are given by name", self.word),
+            1 => format!("`{}` takes one argument by place", self.word),
+            n => format!("`{}` takes {n} arguments by place", self.word),
+        };
+        let unnamed = if self.formals.is_empty() { "no argument is wanted" } else { "which one is this?" };
+        let list = self.formals.first().is_some_and(|f| f.name == "list");
+        Diagnostic::error("E0406", told).at(at, unnamed).help(if list {
+            format!("put the operands in a list: `{}([a, b])`", self.word)
+        } else {
+            format!("it is `{}`", self.signature())
+        })
+    }
+}
+
+/// The arguments of a builtin, evaluated.
+pub struct Bound<'a> {
+    /// What is called.
+    pub callee: Callee<'a>,
+    /// What a method is called on.
+    pub receiver: Option<Located>,
+    /// One for each formal argument.
+    pub values: Vec<Option<Located>>,
+    /// How each was written.
+    pub written: Vec<String>,
+}
+
+impl Bound<'_> {
+    fn index(&self, name: &str) -> Option<usize> {
+        self.callee.formals.iter().position(|f| f.name == name)
+    }
+
+    /// An argument, if it was given.
+    pub fn get(&self, name: &str) -> Option<&Located> {
+        self.values.get(self.index(name)?)?.as_ref()
+    }
+
+    /// An argument that the call needs.
+    pub fn need(&self, name: &str) -> Eval<&Located> {
+        self.get(name).ok_or_else(|| self.callee.missing(name).into())
+    }
+
+    /// An angle, degrees.
+    pub fn angle(&self, name: &str) -> Eval<f64> {
+        let written = self.index(name).and_then(|i| self.written.get(i)).map_or("", String::as_str);
+        self.need(name)?.angle(name, written)
+    }
+
+    /// What a method is called on.
+    pub fn receiver(&self) -> Eval<&Located> {
+        self.receiver.as_ref().ok_or_else(|| self.callee.missing("shape").into())
+    }
+}
+
+/// A kind of value in words, with its article.
+pub fn wanted(kind: Kind) -> String {
+    match kind {
+        Kind::Number => "a number".into(),
+        Kind::Int(lo, hi) => format!("a whole number from {lo} to {hi}"),
+        Kind::Length | Kind::Size => "a length".into(),
+        Kind::SizeOrVector => "a length or a vector of 3 lengths".into(),
+        Kind::Positive => "a number above zero".into(),
+        Kind::Angle => "an angle".into(),
+        Kind::Color => "a colour".into(),
+        Kind::Vector(n) => format!("a vector of {n} numbers"),
+        Kind::Choice(words) => format!("one of {}", quoted(words)),
+        Kind::Choices(words) => format!("a list of {}", quoted(words)),
+        Kind::Bool => "`true` or `false`".into(),
+        Kind::Path => "the name of a file".into(),
+        Kind::PathOrSolid => "the name of a file or a solid".into(),
+        Kind::HalfSpace => "a condition on x, y and z".into(),
+        Kind::LengthOr(words) => format!("a length or one of {}", quoted(words)),
+    }
+}
+
+/// Words as they are written in a scene.
+pub fn quoted(words: &[&str]) -> String {
+    words.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(", ")
+}

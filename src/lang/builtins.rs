@@ -1,0 +1,39 @@
+//! The table of functions, methods and constants that the language itself knows: adding one is one line here
+//! or in the table of its room. What a scene can build is in the catalogue instead.
+
+use super::args::{Bound, Formal};
+use super::value::{Eval, Val};
+use super::{maths, methods, sets};
+
+/// A function or a method.
+#[derive(Clone, Copy, Debug)]
+pub struct Builtin {
+    /// The word.
+    pub name: &'static str,
+    /// What it takes.
+    pub formals: &'static [Formal],
+    /// One sentence.
+    pub doc: &'static str,
+    /// What it does.
+    pub call: fn(&Bound) -> Eval<Val>,
+}
+
+/// Names of numbers: name, value, meaning.
+pub const CONSTANTS: [(&str, f64, &str); 2] = [
+    ("pi", std::f64::consts::PI, "half the circumference of a unit circle"),
+    ("tau", std::f64::consts::TAU, "the circumference of a unit circle"),
+];
+
+/// Methods of shapes.
+pub const METHODS: &[Builtin] = methods::TABLE;
+
+/// All functions.
+pub fn functions() -> impl Iterator<Item = &'static Builtin> {
+    sets::TABLE.iter().chain(maths::TABLE)
+}
+
+/// Words of the language that are not carried out yet.
+pub const LATER: &[&str] = &[
+    "mirror", "matrix", "array", "around", "instance", "cut", "inset", "offset", "clip", "thicken", "bounds",
+    "inside", "volume", "area", "centroid", "empty", "solid", "raycast", "rand", "count", "implicit",
+];

@@ -1,0 +1,166 @@
+//! Calls of declared things: every argument checked against the kind its declaration names.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use super::args::{Callee, formals, quoted, wanted};
+use super::ast::{Args, Expr};
+use super::eval::Machine;
+use super::half_space;
+use super::value::{Eval, Located, Val};
+use crate::diag::{Diagnostic, nearest};
+use crate::scene::{Arg, Call, Decl, Kind, Param, Value};
+use crate::source::Span;
+
+/// A call of `decl` with its arguments checked.
+pub fn call(machine: &mut Machine, decl: &Decl, args: &Args, at: Span) -> Eval<Call> {
+    call_without(machine, decl, args, at, "")
+}
+
+/// The same where an argument of this name was read already.
+pub fn call_without(machine: &mut Machine, decl: &Decl, args: &Args, at: Span, known: &str) -> Eval<Call> {
+    let formals = formals(decl);
+    let bound = Callee { word: decl.word, at, formals: &formals }.bind(args, known)?;
+    let mut checked = BTreeMap::new();
+    for (param, expr) in decl.params.iter().zip(bound) {
+        if let Some(expr) = expr {
+            let value = argument(machine, param, expr)?;
+            checked.insert(param.name.to_owned(), Arg { value, at: expr.at });
+        }
+    }
+    Ok(Call { word: decl.word.to_owned(), args: checked, at })
+}
+
+fn argument(machine: &mut Machine, param: &Param, expr: &Expr) -> Eval<Value> {
+    if param.kind == Kind::HalfSpace {
+        let (normal, offset) = half_space::read(machine, expr)?;
+        return Ok(Value::HalfSpace { normal, offset });
+    }
+    let given = machine.located(expr)?;
+    let name = param.name;
+    Ok(match param.kind {
+        Kind::Number => Value::Number(given.number(name)?),
+        Kind::Length => Value::Number(given.as_number(name, "a length")?),
+        Kind::Positive => Value::Number(positive(&given, name)?),
+        Kind::Int(lo, hi) => Value::Number(whole(&given, name, lo, hi)?),
+        Kind::Size => Value::Number(size(machine, &given, name)?),
+        Kind::SizeOrVector if matches!(given.value, Val::List(_)) => {
+            let items = sizes(machine, &given, name)?;
+            Value::Vector(items)
+        }
+        Kind::SizeOrVector => Value::Number(size(machine, &given, name)?),
+        Kind::Angle => Value::Angle(given.angle(name, machine.written(expr.at))?.to_radians()),
+        Kind::Color => match given.value {
+            Val::Color(c) => Value::Color(c),
+            _ => return Err(given.unlike(name, "a colour").help("write a colour, such as `#b8683c`").into()),
+        },
+        Kind::Vector(n) => Value::Vector(given.vector(name, n)?),
+        Kind::Bool => match given.value {
+            Val::Bool(b) => Value::Bool(b),
+            _ => return Err(given.unlike(name, "`true` or `false`").help("write `true` or `false`").into()),
+        },
+        Kind::Choice(words) => Value::Text(choice(&given, name, words)?),
+        Kind::Choices(words) => Value::Texts(choices(&given, name, words, param.kind)?),
+        Kind::LengthOr(words) => match &given.value {
+            Val::Text(..) => Value::Text(choice(&given, name, words)?),
+            _ => Value::Number(given.as_number(name, &wanted(param.kind))?),
+        },
+        Kind::Path => path(machine, &given, name, param.kind)?,
+        Kind::PathOrSolid => match given.value {
+            Val::Shape(shape) => Value::Shape(shape),
+            _ => path(machine, &given, name, param.kind)?,
+        },
+        Kind::HalfSpace => return Err(given.unlike(name, &wanted(param.kind)).into()),
+    })
+}
+
+fn size(machine: &mut Machine, given: &Located, name: &str) -> Eval<f64> {
+    let x = given.as_number(name, "a length")?;
+    if x < 0.0 {
+        return Err(Diagnostic::error("E0506", format!("`{name}` is negative"))
+            .at(given.at, format!("{x}"))
+            .help("a size is zero or more")
+            .into());
+    }
+    if x == 0.0 {
+        let warning = Diagnostic::warning("W0101", format!("`{name}` is zero: the shape is nothing"))
+            .at(given.at, "no size")
+            .help("give it a size, or leave the shape out");
+        machine.warnings.push(warning);
+    }
+    Ok(x)
+}
+
+fn sizes(machine: &mut Machine, given: &Located, name: &str) -> Eval<Vec<f64>> {
+    let Val::List(list) = &given.value else {
+        return given.vector(name, 3);
+    };
+    given.vector(name, 3)?;
+    list.items.iter().map(|i| size(machine, &Located { at: given.at, ..i.clone() }, name)).collect()
+}
+
+fn positive(given: &Located, name: &str) -> Eval<f64> {
+    let x = given.number(name)?;
+    if x > 0.0 {
+        return Ok(x);
+    }
+    Err(Diagnostic::error("E0503", format!("`{name}` must be above zero"))
+        .at(given.at, format!("{x}"))
+        .help("write a number above zero")
+        .into())
+}
+
+fn whole(given: &Located, name: &str, lo: i64, hi: i64) -> Eval<f64> {
+    let x = given.number(name)?;
+    if x.fract() == 0.0 && (lo as f64..=hi as f64).contains(&x) {
+        return Ok(x);
+    }
+    Err(Diagnostic::error("E0503", format!("`{name}` must be a whole number from {lo} to {hi}"))
+        .at(given.at, format!("{x}"))
+        .help(format!("write a whole number from {lo} to {hi}"))
+        .into())
+}
+
+/// One of some words.
+pub fn choice(given: &Located, name: &str, words: &[&str]) -> Eval<String> {
+    let Val::Text(text, _) = &given.value else {
+        let help = format!("write one of {}", quoted(words));
+        return Err(given.unlike(name, "a word").help(help).into());
+    };
+    if words.contains(&&**text) {
+        return Ok(text.to_string());
+    }
+    let told = format!("`{name}` cannot be \"{}\"", text.escape_debug());
+    Err(Diagnostic::error("E0507", told)
+        .at(given.at, "unknown word")
+        .help(match nearest(text, words.iter().copied()) {
+            Some(known) => format!("did you mean \"{known}\"?"),
+            None => format!("write one of {}", quoted(words)),
+        })
+        .into())
+}
+
+fn choices(given: &Located, name: &str, words: &[&str], kind: Kind) -> Eval<Vec<String>> {
+    match &given.value {
+        Val::List(list) => list.items.iter().map(|i| choice(i, name, words)).collect(),
+        _ => Err(given.unlike(name, &wanted(kind)).help("write a list, such as `[\"depth\"]`").into()),
+    }
+}
+
+fn path(machine: &Machine, given: &Located, name: &str, kind: Kind) -> Eval<Value> {
+    let Val::Text(text, home) = &given.value else {
+        return Err(given.unlike(name, &wanted(kind)).help("write a name, such as `\"scan.ply\"`").into());
+    };
+    if text.is_empty() {
+        return Err(Diagnostic::error("E0503", format!("`{name}` names no file"))
+            .at(given.at, "empty")
+            .help("write a name, such as `\"scan.ply\"`")
+            .into());
+    }
+    let file = home.and_then(|id| machine.sources.file(id).path.as_deref());
+    Ok(Value::Path {
+        text: text.to_string(),
+        base: file.and_then(Path::parent).map_or_else(PathBuf::new, Path::to_owned),
+        from_command_line: home.is_none(),
+    })
+}

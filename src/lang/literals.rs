@@ -1,0 +1,96 @@
+//! Numbers, colours and strings as they are written.
+
+use super::ast::{ExprKind, Word};
+use super::value::MAX_NUMBER;
+use super::{syntax, units};
+use crate::diag::{Diagnostic, nearest};
+use crate::source::Span;
+
+/// A number with the unit that touches it.
+pub fn number(digits: &str, unit: Option<Word>, at: Span) -> Result<ExprKind, Box<Diagnostic>> {
+    let value: f64 = digits.parse().unwrap_or(f64::INFINITY);
+    if !value.is_finite() {
+        return Err(Diagnostic::error("E0504", format!("`{digits}` is not finite"))
+            .at(at, "too large for a number")
+            .help(format!("numbers reach from -{MAX_NUMBER:e} to {MAX_NUMBER:e}"))
+            .into());
+    }
+    if value > MAX_NUMBER {
+        return Err(super::value::too_large(at).into());
+    }
+    let Some(word) = unit else { return Ok(ExprKind::Number(value, None)) };
+    if let Some(unit) = units::find(&word.text) {
+        return Ok(ExprKind::Number(value, Some(unit)));
+    }
+    let name = &word.text;
+    let listed = units::names().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(" ");
+    let help = match nearest(name, units::names()) {
+        _ if name == "pi" || name == "tau" || syntax::KEYWORDS.contains(&name.as_str()) => {
+            spaced(digits, name)
+        }
+        Some(known) => format!("did you mean `{digits}{known}`?"),
+        None if name.starts_with('_') => "digits stand together: `1000`".to_owned(),
+        None => format!("the units are {listed}; for a product write `{digits} * {name}`"),
+    };
+    Err(Diagnostic::error("E0105", format!("`{name}` is not a unit"))
+        .at(word.at, "not a unit")
+        .help(help)
+        .into())
+}
+
+fn spaced(digits: &str, name: &str) -> String {
+    match name {
+        "pi" | "tau" => format!("write `{digits} * {name}`"),
+        _ => format!("put a space before the keyword: `{digits} {name}`"),
+    }
+}
+
+/// A colour, decoded from sRGB to linear.
+pub fn color(text: &str, at: Span) -> Result<[f32; 3], Box<Diagnostic>> {
+    let digits: Option<Vec<u32>> = text[1..].chars().map(|c| c.to_digit(16)).collect();
+    let channels = match digits.as_deref() {
+        Some([r, g, b]) => [r * 17, g * 17, b * 17],
+        Some([r1, r0, g1, g0, b1, b0]) => [r1 * 16 + r0, g1 * 16 + g0, b1 * 16 + b0],
+        _ => {
+            return Err(Diagnostic::error("E0105", format!("`{text}` is not a colour"))
+                .at(at, "expected 3 or 6 hexadecimal digits")
+                .help("write `#rgb` or `#rrggbb`, such as `#b8683c`")
+                .into());
+        }
+    };
+    Ok(channels.map(|c| linear(f64::from(c) / 255.0) as f32))
+}
+
+/// One channel of sRGB as linear light (IEC 61966-2-1).
+fn linear(c: f64) -> f64 {
+    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+}
+
+/// A string, its quotes removed and its escapes resolved.
+pub fn text(quoted: &str, at: Span) -> Result<String, Box<Diagnostic>> {
+    let inside = quoted.get(1..quoted.len().saturating_sub(1)).unwrap_or("");
+    let mut out = String::with_capacity(inside.len());
+    let mut chars = inside.char_indices();
+    while let Some((_, c)) = chars.next() {
+        if c != '\\' {
+            out.push(c);
+            continue;
+        }
+        match chars.next() {
+            Some((_, '"')) => out.push('"'),
+            Some((_, '\\')) => out.push('\\'),
+            Some((_, 'n')) => out.push('\n'),
+            Some((_, 't')) => out.push('\t'),
+            Some((i, other)) => {
+                let start = at.start + i as u32;
+                let place = Span { start, end: start + 1 + other.len_utf8() as u32, ..at };
+                return Err(Diagnostic::error("E0104", format!("`\\{}` is no escape", other.escape_debug()))
+                    .at(place, "unknown escape")
+                    .help("the escapes are `\\\"` `\\\\` `\\n` `\\t`; a backslash is written `\\\\`")
+                    .into());
+            }
+            None => {}
+        }
+    }
+    Ok(out)
+}

@@ -1,0 +1,167 @@
+//! The functions of numbers, angles, vectors and colours. On a vector, a function of one number acts on each.
+
+use super::args::{Bound, Formal};
+use super::ast::AngleUnit;
+use super::builtins::Builtin;
+use super::units;
+use super::value::{Eval, Located, Val};
+use crate::diag::Diagnostic;
+
+const X: &[Formal] = &[Formal::place("x")];
+const V: &[Formal] = &[Formal::place("v")];
+const AB: &[Formal] = &[Formal::place("a"), Formal::place("b")];
+const ANGLE: &[Formal] = &[Formal::place("angle")];
+const CLAMP: &[Formal] = &[Formal::place("x"), Formal::place("lo"), Formal::place("hi")];
+const MIX: &[Formal] = &[Formal::place("a"), Formal::place("b"), Formal::place("t")];
+const YX: &[Formal] = &[Formal::place("y"), Formal::place("x")];
+const RGB: &[Formal] = &[Formal::place("r"), Formal::place("g"), Formal::place("b")];
+
+const fn line(
+    name: &'static str,
+    formals: &'static [Formal],
+    doc: &'static str,
+    call: fn(&Bound) -> Eval<Val>,
+) -> Builtin {
+    Builtin { name, formals, doc, call }
+}
+
+/// The functions.
+pub const TABLE: &[Builtin] = &[
+    line("sqrt", X, "The square root.", |b| each(b, f64::sqrt)),
+    line("abs", X, "Without its sign.", |b| each_or_angle(b, f64::abs)),
+    line("floor", X, "The largest whole number not above.", |b| each(b, f64::floor)),
+    line("ceil", X, "The smallest whole number not below.", |b| each(b, f64::ceil)),
+    line("round", X, "The nearest whole number; halves away from zero.", |b| each(b, f64::round)),
+    line("exp", X, "e to this power.", |b| each(b, f64::exp)),
+    line("ln", X, "The natural logarithm.", |b| each(b, f64::ln)),
+    line("min", AB, "The smaller of two.", |b| pairwise(b.need("a")?, b.need("b")?, f64::min)),
+    line("max", AB, "The larger of two.", |b| pairwise(b.need("a")?, b.need("b")?, f64::max)),
+    line("clamp", CLAMP, "The nearest to x between lo and hi.", clamp),
+    line("mix", MIX, "From a to b as t goes from 0 to 1.", mix),
+    line("sin", ANGLE, "The sine of an angle.", |b| of_angle(b, |d| units::sin_cos(d).0)),
+    line("cos", ANGLE, "The cosine of an angle.", |b| of_angle(b, |d| units::sin_cos(d).1)),
+    line("tan", ANGLE, "The tangent of an angle.", |b| {
+        of_angle(b, |d| {
+            let (s, c) = units::sin_cos(d);
+            s / c
+        })
+    }),
+    line("asin", X, "The angle with this sine.", |b| to_angle(b, f64::asin)),
+    line("acos", X, "The angle with this cosine.", |b| to_angle(b, f64::acos)),
+    line("atan2", YX, "The angle from the x axis to [x, y].", atan2),
+    line("length", V, "The Euclidean length of a vector.", |b| Ok(Val::Number(norm(&vector(b, "v")?)))),
+    line("normalize", V, "The vector with length 1.", normalize),
+    line("dot", AB, "The scalar product.", dot),
+    line("cross", AB, "The vector product.", cross),
+    line("rgb", RGB, "A colour by its linear channels.", rgb),
+];
+
+fn each(bound: &Bound, f: fn(f64) -> f64) -> Eval<Val> {
+    let x = bound.need("x")?;
+    match x.value.numbers() {
+        Some(v) => Ok(Val::vector(v.into_iter().map(f), x.at)),
+        None => Ok(Val::Number(f(x.number("x")?))),
+    }
+}
+
+fn each_or_angle(bound: &Bound, f: fn(f64) -> f64) -> Eval<Val> {
+    match bound.need("x")?.value {
+        Val::Angle(d) => Ok(Val::Angle(f(d))),
+        _ => each(bound, f),
+    }
+}
+
+fn pairwise(a: &Located, b: &Located, f: impl Fn(f64, f64) -> f64) -> Eval<Val> {
+    if let (Val::Angle(a), Val::Angle(b)) = (&a.value, &b.value) {
+        return Ok(Val::Angle(f(*a, *b)));
+    }
+    match (a.value.numbers(), b.value.numbers()) {
+        (Some(u), Some(v)) if u.len() == v.len() => {
+            Ok(Val::vector(u.into_iter().zip(v).map(|(x, y)| f(x, y)), a.at))
+        }
+        (Some(u), None) => {
+            let y = b.number("b")?;
+            Ok(Val::vector(u.into_iter().map(|x| f(x, y)), a.at))
+        }
+        (None, Some(v)) => {
+            let x = a.number("a")?;
+            Ok(Val::vector(v.into_iter().map(|y| f(x, y)), a.at))
+        }
+        _ => Ok(Val::Number(f(a.number("a")?, b.number("b")?))),
+    }
+}
+
+fn clamp(bound: &Bound) -> Eval<Val> {
+    let x = bound.need("x")?;
+    let above = Located { value: pairwise(x, bound.need("lo")?, f64::max)?, at: x.at };
+    pairwise(&above, bound.need("hi")?, f64::min)
+}
+
+fn mix(bound: &Bound) -> Eval<Val> {
+    let (a, b, t) = (bound.need("a")?, bound.need("b")?, bound.need("t")?.number("t")?);
+    if let (Val::Color(a), Val::Color(b)) = (&a.value, &b.value) {
+        let t = t as f32;
+        return Ok(Val::Color([0, 1, 2].map(|i| a[i] * (1.0 - t) + b[i] * t)));
+    }
+    pairwise(a, b, |a, b| a * (1.0 - t) + b * t)
+}
+
+fn of_angle(bound: &Bound, f: fn(f64) -> f64) -> Eval<Val> {
+    Ok(Val::Number(f(bound.angle("angle")?)))
+}
+
+fn to_angle(bound: &Bound, f: fn(f64) -> f64) -> Eval<Val> {
+    let x = bound.need("x")?.number("x")?;
+    Ok(Val::Angle(units::degrees(f(x), AngleUnit::Radian)))
+}
+
+fn atan2(bound: &Bound) -> Eval<Val> {
+    let (y, x) = (bound.need("y")?.number("y")?, bound.need("x")?.number("x")?);
+    Ok(Val::Angle(units::degrees(y.atan2(x), AngleUnit::Radian)))
+}
+
+fn vector(bound: &Bound, name: &str) -> Eval<Vec<f64>> {
+    let given = bound.need(name)?;
+    match given.value.numbers() {
+        Some(v) => Ok(v),
+        None => given.vector(name, 3),
+    }
+}
+
+fn norm(v: &[f64]) -> f64 {
+    let largest = v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    if largest == 0.0 { 0.0 } else { largest * v.iter().map(|x| (x / largest).powi(2)).sum::<f64>().sqrt() }
+}
+
+fn normalize(bound: &Bound) -> Eval<Val> {
+    let v = vector(bound, "v")?;
+    let n = norm(&v);
+    Ok(Val::vector(v.into_iter().map(|x| x / n), bound.callee.at))
+}
+
+fn dot(bound: &Bound) -> Eval<Val> {
+    let a = vector(bound, "a")?;
+    let b = bound.need("b")?.vector("b", a.len())?;
+    Ok(Val::Number(a.iter().zip(b).map(|(x, y)| x * y).sum()))
+}
+
+fn cross(bound: &Bound) -> Eval<Val> {
+    let (a, b) = (bound.need("a")?.vec3("a")?, bound.need("b")?.vec3("b")?);
+    Ok(Val::vector(a.cross(b).to_array(), bound.callee.at))
+}
+
+fn rgb(bound: &Bound) -> Eval<Val> {
+    let mut channels = [0.0; 3];
+    for (channel, name) in channels.iter_mut().zip(["r", "g", "b"]) {
+        let given = bound.need(name)?;
+        let x = given.number(name)?;
+        if x < 0.0 {
+            return Err(Diagnostic::error("E0506", format!("`{name}` is negative"))
+                .at(given.at, format!("{x}"))
+                .help("the channels of a colour are zero or more")
+                .into());
+        }
+        *channel = x as f32;
+    }
+    Ok(Val::Color(channels))
+}

@@ -1,0 +1,181 @@
+//! The methods of shapes: each makes a node around the shape it is called on.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::args::{Bound, Formal};
+use super::builtins::Builtin;
+use super::units::sin_cos;
+use super::value::{Eval, Val};
+use crate::diag::Diagnostic;
+use crate::scene::{FitTo, Shape, ShapeKind};
+
+const MOVE: &[Formal] = &[Formal::place("by")];
+const TURN: &[Formal] = &[Formal::place("angle"), Formal::named("about").optional()];
+const ROTATE: &[Formal] = &[Formal::named("axis"), Formal::named("by"), Formal::named("about").optional()];
+const SCALE: &[Formal] = &[Formal::place("factor"), Formal::named("about").optional()];
+const FIT: &[Formal] =
+    &[Formal::place("at"), Formal::named("height").optional(), Formal::named("size").optional()];
+const WITH: &[Formal] = &[Formal::place("material")];
+const CLOSE: &[Formal] = &[Formal::named("max_hole").optional()];
+
+/// The methods.
+pub const TABLE: &[Builtin] = &[
+    Builtin { name: "move", formals: MOVE, doc: "Moved by a vector.", call: translate },
+    Builtin {
+        name: "rotate_x",
+        formals: TURN,
+        doc: "Turned around the x axis, from y to z.",
+        call: |b| turn(b, DVec3::X),
+    },
+    Builtin {
+        name: "rotate_y",
+        formals: TURN,
+        doc: "Turned around the y axis, from z to x.",
+        call: |b| turn(b, DVec3::Y),
+    },
+    Builtin {
+        name: "rotate_z",
+        formals: TURN,
+        doc: "Turned around the z axis, from x to y.",
+        call: |b| turn(b, DVec3::Z),
+    },
+    Builtin { name: "rotate", formals: ROTATE, doc: "Turned around an axis, right-handed.", call: rotate },
+    Builtin {
+        name: "scale",
+        formals: SCALE,
+        doc: "Scaled by a factor, or by one for each axis.",
+        call: scale,
+    },
+    Builtin {
+        name: "fit",
+        formals: FIT,
+        doc: "Scaled to a height or a size, the middle of the bottom of its bounds at a point.",
+        call: fit,
+    },
+    Builtin { name: "with", formals: WITH, doc: "Wears a material where it has none.", call: with },
+    Builtin { name: "close", formals: CLOSE, doc: "The holes of an open scan capped.", call: close },
+];
+
+fn node(bound: &Bound, kind: impl FnOnce(Shape) -> ShapeKind) -> Eval<Val> {
+    let child = bound.receiver()?.shape("shape")?.clone();
+    Ok(Val::Shape(Shape::new(kind(child), bound.callee.at)))
+}
+
+fn transform(bound: &Bound, linear: DMat3) -> Eval<Val> {
+    let about = bound.get("about").map_or(Ok(DVec3::ZERO), |a| a.vec3("about"))?;
+    let world_from_local = DAffine3::from_mat3_translation(linear, about - linear * about);
+    if !world_from_local.is_finite() {
+        return Err(Diagnostic::error("E0504", "the placement is not finite")
+            .at(bound.callee.at, "infinite or undefined")
+            .help("use smaller numbers")
+            .into());
+    }
+    node(bound, |child| ShapeKind::Transform { world_from_local, child })
+}
+
+fn translate(bound: &Bound) -> Eval<Val> {
+    let world_from_local = DAffine3::from_translation(bound.need("by")?.vec3("by")?);
+    node(bound, |child| ShapeKind::Transform { world_from_local, child })
+}
+
+fn turn(bound: &Bound, axis: DVec3) -> Eval<Val> {
+    transform(bound, rotation(axis, bound.angle("angle")?))
+}
+
+fn rotate(bound: &Bound) -> Eval<Val> {
+    let axis = bound.need("axis")?;
+    let direction = axis.vec3("axis")?;
+    let largest = direction.abs().max_element();
+    if largest == 0.0 {
+        return Err(Diagnostic::error("E0510", "the axis has no direction")
+            .at(axis.at, "zero")
+            .help("write a direction, such as `[0, 0, 1]`")
+            .into());
+    }
+    let unit = (direction / largest).normalize();
+    transform(bound, rotation(unit, bound.angle("by")?))
+}
+
+/// The right-handed rotation around a unit vector (Rodrigues), exact for quarter turns around the axes.
+fn rotation(axis: DVec3, degrees: f64) -> DMat3 {
+    let (s, c) = sin_cos(degrees);
+    let skew = DMat3::from_cols(
+        DVec3::new(0.0, axis.z, -axis.y),
+        DVec3::new(-axis.z, 0.0, axis.x),
+        DVec3::new(axis.y, -axis.x, 0.0),
+    );
+    let along = DMat3::from_cols(axis * axis.x, axis * axis.y, axis * axis.z);
+    let across = DMat3::IDENTITY + along * -1.0;
+    let sum = along + across * c + skew * s;
+    // A sum with zero turns -0 into 0.
+    DMat3::from_cols(sum.x_axis + DVec3::ZERO, sum.y_axis + DVec3::ZERO, sum.z_axis + DVec3::ZERO)
+}
+
+fn scale(bound: &Bound) -> Eval<Val> {
+    let given = bound.need("factor")?;
+    let factor = match given.value {
+        Val::Number(_) => DVec3::splat(given.number("factor")?),
+        _ => given.vec3("factor")?,
+    };
+    if factor.to_array().contains(&0.0) {
+        return Err(Diagnostic::error("E0510", "the scale is zero")
+            .at(given.at, "flattens the shape to nothing")
+            .help("a scale is any number but zero")
+            .into());
+    }
+    transform(bound, DMat3::from_diagonal(factor))
+}
+
+fn fit(bound: &Bound) -> Eval<Val> {
+    let at = bound.need("at")?.vec3("at")?;
+    let (given, name) = match (bound.get("height"), bound.get("size")) {
+        (Some(given), None) => (given, "height"),
+        (None, Some(given)) => (given, "size"),
+        (None, None) => return Err(bound.callee.missing("height").help("write `height:` or `size:`").into()),
+        (Some(height), Some(size)) => {
+            return Err(Diagnostic::error("E0405", "`height` and `size` are both given")
+                .at(size.at, "the size")
+                .at(height.at, "the height")
+                .help("remove one of them")
+                .into());
+        }
+    };
+    let measure = above_zero(given.number(name)?, name, given.at)?;
+    let to = if name == "height" { FitTo::Height(measure) } else { FitTo::Size(measure) };
+    node(bound, |child| ShapeKind::Fit { at, to, child })
+}
+
+fn with(bound: &Bound) -> Eval<Val> {
+    let given = bound.need("material")?;
+    let Val::Material(material) = given.value else {
+        let error = given.unlike("material", "a material");
+        return Err(error
+            .help(match given.value {
+                Val::Color(_) => "write a material of this colour, such as `matte(#b8683c)`",
+                _ => "name one: `material clay(color: #b8683c)`, then `.with(clay)`",
+            })
+            .into());
+    };
+    node(bound, |child| ShapeKind::With { material, child })
+}
+
+fn close(bound: &Bound) -> Eval<Val> {
+    let max_hole = match bound.get("max_hole") {
+        Some(given) => {
+            let width = given.as_number("max_hole", "a length")?;
+            Some(above_zero(width, "max_hole", given.at)?)
+        }
+        None => None,
+    };
+    node(bound, |child| ShapeKind::Close { max_hole, child })
+}
+
+fn above_zero(x: f64, name: &str, at: crate::source::Span) -> Eval<f64> {
+    if x > 0.0 {
+        return Ok(x);
+    }
+    Err(Diagnostic::error("E0503", format!("`{name}` must be above zero"))
+        .at(at, format!("{x}"))
+        .help("write a length above zero")
+        .into())
+}

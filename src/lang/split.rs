@@ -1,0 +1,284 @@
+//! Cuts a file into items, so that each is parsed alone and one mistake hides no other. What cannot be cut is
+//! told here: brackets that do not match, strangers among the characters, nesting without end. What an item
+//! says is left to `parse`.
+
+use std::ops::Range;
+
+use super::scan::{Token, TokenKind, tokens};
+use super::span;
+use crate::diag::{Diagnostic, nearest};
+use crate::source::{FileId, Span};
+
+/// The words that begin an item.
+pub const ITEM_WORDS: [&str; 12] = [
+    "let", "fn", "param", "import", "material", "camera", "light", "render", "units", "draw", "print",
+    "expect",
+];
+
+/// How deep brackets, signs and branches may nest together.
+pub const MAX_NESTING: usize = 1000;
+
+/// The items of a text and what stood in the way.
+pub struct Cut {
+    /// Bytes of the items that are worth parsing.
+    pub items: Vec<Range<usize>>,
+    /// What is wrong with the others.
+    pub errors: Vec<Diagnostic>,
+}
+
+/// Cuts a text.
+pub fn cut(text: &str, file: FileId) -> Cut {
+    let tokens = tokens(text);
+    let mut cutter = Cutter {
+        text,
+        file,
+        tokens: &tokens,
+        open: Vec::new(),
+        item: None,
+        in_attributes: false,
+        out: Cut { items: Vec::new(), errors: Vec::new() },
+    };
+    for i in 0..tokens.len() {
+        cutter.take(i);
+    }
+    cutter.finish();
+    let mut out = cutter.out;
+    if let Some(at) = too_deep(text, &tokens) {
+        let told = format!("expressions nest deeper than {MAX_NESTING}");
+        let error = Diagnostic::error("E0701", told)
+            .at(span(file, at), "this is too deep")
+            .help("name the inner parts with `let`, or list the operands, as in `union([a, b])`");
+        out = Cut { items: Vec::new(), errors: vec![error] };
+    }
+    out
+}
+
+/// Whether a text is shallow enough to be parsed.
+pub fn is_shallow(text: &str) -> bool {
+    too_deep(text, &tokens(text)).is_none()
+}
+
+/// The item being collected.
+struct Open {
+    start: usize,
+    sound: bool,
+}
+
+struct Cutter<'a> {
+    text: &'a str,
+    file: FileId,
+    tokens: &'a [Token],
+    /// Brackets that are open, as indices of tokens.
+    open: Vec<usize>,
+    item: Option<Open>,
+    in_attributes: bool,
+    out: Cut,
+}
+
+impl Cutter<'_> {
+    fn take(&mut self, i: usize) {
+        let begins = self.begins_item(i);
+        if begins {
+            if !self.open.is_empty() {
+                self.unclosed(Some(i));
+            }
+            self.close_item(self.tokens[i].range.start);
+            self.item = Some(Open { start: i, sound: true });
+        }
+        let word = self.tokens[i].text(self.text);
+        self.in_attributes = word == "@" && (begins || self.in_attributes)
+            || self.in_attributes && i > 0 && self.tokens[i - 1].text(self.text) == "@";
+        if self.item.is_none() {
+            self.no_item(i);
+            self.item = Some(Open { start: i, sound: false });
+        }
+        match self.tokens[i].kind {
+            TokenKind::Open => self.open.push(i),
+            TokenKind::Close => self.close_bracket(i),
+            TokenKind::OpenText | TokenKind::OpenComment | TokenKind::Stranger => self.strange(i),
+            _ => {}
+        }
+    }
+
+    fn finish(&mut self) {
+        if !self.open.is_empty() {
+            self.unclosed(None);
+        }
+        self.close_item(self.text.len());
+    }
+
+    /// Whether an item begins at a token. Inside brackets only what can stand nowhere else does, so that one
+    /// forgotten bracket costs one item.
+    fn begins_item(&self, i: usize) -> bool {
+        let token = &self.tokens[i];
+        let near = |j: Option<usize>| j.and_then(|j| self.tokens.get(j)).map(|t| (t.kind, t.text(self.text)));
+        let (before, after) = (near(i.checked_sub(1)), near(Some(i + 1)));
+        let word = token.text(self.text);
+        if self.in_attributes || before.is_some_and(|(_, t)| t == "." || t == "@") {
+            return false;
+        }
+        let starts = match token.kind {
+            TokenKind::Sign => word == "@",
+            TokenKind::Word if word == "fn" => after.is_some_and(|(k, _)| k == TokenKind::Word),
+            TokenKind::Word => ITEM_WORDS.contains(&word),
+            _ => false,
+        };
+        let Some(innermost) = self.open.last() else {
+            return starts;
+        };
+        let in_block = self.tokens[*innermost].text(self.text) == "{";
+        starts && token.leads_line && after.is_none_or(|(_, t)| t != ":") && !(word == "let" && in_block)
+    }
+
+    fn close_item(&mut self, end: usize) {
+        if let Some(item) = self.item.take()
+            && item.sound
+        {
+            let start = self.tokens[item.start].range.start;
+            self.out.items.push(start..end);
+        }
+    }
+
+    fn spoil(&mut self, error: Diagnostic) {
+        if let Some(item) = &mut self.item
+            && std::mem::take(&mut item.sound)
+        {
+            self.out.errors.push(error);
+        }
+    }
+
+    fn place(&self, i: usize) -> Span {
+        span(self.file, self.tokens[i].range.clone())
+    }
+
+    fn close_bracket(&mut self, i: usize) {
+        let closing = self.tokens[i].text(self.text);
+        let Some(opening) = self.open.pop() else {
+            let error = Diagnostic::error("E0102", format!("`{closing}` closes nothing"))
+                .at(self.place(i), "no bracket is open here")
+                .help("remove it, or open a bracket before");
+            return self.spoil(error);
+        };
+        let opener = self.tokens[opening].text(self.text);
+        let wanted = closing_of(opener);
+        if closing != wanted {
+            let error = Diagnostic::error("E0102", format!("`{closing}` does not close `{opener}`"))
+                .at(self.place(i), format!("expected `{wanted}`"))
+                .at(self.place(opening), "opened here")
+                .help(format!("put `{wanted}` before `{closing}`"));
+            self.spoil(error);
+        }
+    }
+
+    /// The innermost open bracket has no partner: everything open is forgotten.
+    fn unclosed(&mut self, before: Option<usize>) {
+        let Some(opening) = self.open.last().copied() else { return };
+        self.open.clear();
+        let opener = self.tokens[opening].text(self.text);
+        let wanted = closing_of(opener);
+        let mut error = Diagnostic::error("E0102", format!("`{opener}` is not closed"))
+            .at(self.place(opening), "opened here")
+            .help(format!("add the missing `{wanted}`"));
+        if let Some(i) = before {
+            error = error.at(self.place(i), format!("expected `{wanted}` before this"));
+        }
+        self.spoil(error);
+    }
+
+    fn strange(&mut self, i: usize) {
+        let error = stranger(self.text, &self.tokens[i], self.place(i));
+        self.spoil(error);
+    }
+
+    fn no_item(&mut self, i: usize) {
+        let error = not_an_item(self.tokens[i].text(self.text), self.place(i));
+        self.out.errors.push(error);
+    }
+}
+
+fn closing_of(opener: &str) -> &'static str {
+    match opener {
+        "(" => ")",
+        "[" => "]",
+        _ => "}",
+    }
+}
+
+/// Something stands where an item should begin.
+pub fn not_an_item(word: &str, at: Span) -> Diagnostic {
+    let error = Diagnostic::error("E0106", format!("`{}` begins no item", word.escape_debug()));
+    match nearest(word, ITEM_WORDS) {
+        Some(known) => error.at(at, "not a keyword").help(format!("did you mean `{known}`?")),
+        None => error
+            .at(at, "expected an item")
+            .help(format!("an item begins with one of {}", ITEM_WORDS.map(|w| format!("`{w}`")).join(" "))),
+    }
+}
+
+fn stranger(text: &str, token: &Token, at: Span) -> Diagnostic {
+    match token.kind {
+        TokenKind::OpenText => Diagnostic::error("E0104", "the string does not end")
+            .at(at, "no closing `\"` on this line")
+            .help("strings end on their line; a line break inside is written `\\n`"),
+        TokenKind::OpenComment => Diagnostic::error("E0108", "the comment does not end")
+            .at(Span { end: at.start + 2, ..at }, "opened here")
+            .help("add the missing `*/`"),
+        _ => {
+            let found = token.text(text);
+            let help = match found {
+                ";" => "items and expressions need nothing between them: remove it",
+                "'" => "strings stand in double quotes",
+                _ if found.chars().all(char::is_alphabetic) => {
+                    "names are made of ASCII letters, digits and `_`"
+                }
+                _ => "outside of strings and comments only ASCII letters, digits and signs are used",
+            };
+            Diagnostic::error("E0103", format!("`{}` has no meaning here", found.escape_debug()))
+                .at(at, "unexpected character")
+                .help(help)
+        }
+    }
+}
+
+/// Where the text nests too deep: open brackets, signs before operands, `**`, `else` and `=>` count alike.
+fn too_deep(text: &str, tokens: &[Token]) -> Option<Range<usize>> {
+    /// What one pair of brackets holds: signs last until the next operator, tails until the next comma.
+    #[derive(Default)]
+    struct Level {
+        signs: usize,
+        tails: usize,
+    }
+    let mut levels = vec![Level::default()];
+    let mut total = 0;
+    let mut after_operand = false;
+    for token in tokens {
+        let word = token.text(text);
+        let inside = levels.len() > 1;
+        let top = levels.last_mut()?;
+        match word {
+            "(" | "[" | "{" => {
+                levels.push(Level::default());
+                total += 1;
+            }
+            ")" | "]" | "}" if inside => {
+                total -= 1 + levels.pop().map_or(0, |l| l.signs + l.tails);
+            }
+            "!" | "not" | "**" => (top.signs, total) = (top.signs + 1, total + 1),
+            "-" if !after_operand => (top.signs, total) = (top.signs + 1, total + 1),
+            "=>" | "else" => (top.tails, total) = (top.tails + 1, total + 1),
+            "," => {
+                total -= top.signs + top.tails;
+                *top = Level::default();
+            }
+            _ if ITEM_WORDS.contains(&word) || matches!(token.kind, TokenKind::Sign) && word != "." => {
+                total -= std::mem::take(&mut top.signs);
+            }
+            _ => {}
+        }
+        after_operand = token.ends_operand(text);
+        if total > MAX_NESTING {
+            return Some(token.range.clone());
+        }
+    }
+    None
+}
