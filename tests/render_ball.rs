@@ -1,7 +1,7 @@
 //! The integrator on a closed form: the unit ball at the origin, seen from the front.
 
 use glam::DVec3;
-use pss::csg::Boundary;
+use pss::csg::{Boundary, Scratch};
 use pss::film::{Aov, Film};
 use pss::geom::{Aabb, Interval, Ray};
 use pss::num::roots::quadratic;
@@ -9,7 +9,7 @@ use pss::render::{Progress, RenderError, Rendered, Scenery, View, render_scenery
 use pss::scene::{Arg, Call, Value};
 use pss::shot::settings::Integrator;
 use pss::shot::{Camera, Hit, Light, Material, Settings, Surface, camera};
-use pss::solid::{Crossing, Scratch};
+use pss::solid::Crossing;
 use pss::source::Span;
 
 /// The unit ball; perhaps open at the far side, a sheet of the same shape.
@@ -31,11 +31,12 @@ impl Scenery for Ball {
     }
 
     fn first(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> Option<Hit> {
-        scratch.counts.leaf_queries += 1;
+        scratch.solid.counts.leaf_queries += 1;
         let roots = roots(ray)?;
         let first = (0..2).find(|&i| range.lo < roots[i] && roots[i] <= range.hi)?;
         let crossing = Crossing::exact(roots[first], first == 0, 0);
-        let boundary = Boundary { t: crossing.t, leaf: 0, crossing, flipped: false, filler: None };
+        let normal = ray.at(crossing.t).normalize();
+        let boundary = Boundary { t: crossing.t, leaf: 0, crossing, normal, flipped: false, filler: None };
         Some(Hit { boundary, entering: first == 0, sheet: self.sheet })
     }
 
@@ -46,7 +47,7 @@ impl Scenery for Ball {
         })
     }
 
-    fn surface(&self, ray: &Ray, hit: &Hit, _: &mut Scratch) -> Surface {
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let point = ray.at(hit.boundary.t);
         Surface { point, normal: point.normalize(), material: 0, offset: 1e-9 }
     }
@@ -271,7 +272,7 @@ impl Scenery for Mined {
         false
     }
 
-    fn surface(&self, _: &Ray, _: &Hit, _: &mut Scratch) -> Surface {
+    fn surface(&self, _: &Ray, _: &Hit) -> Surface {
         unreachable!("nothing is met")
     }
 }

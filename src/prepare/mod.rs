@@ -1,1 +1,185 @@
-//! A scene made ready to trace.
+//! A scene made ready to trace: what is drawn is built, placed and bounded; what nothing draws is never touched.
+//!
+//! [`build`] makes solids of calls, [`samples`] takes samples of solids, [`files`] says what may be read, [`lower`]
+//! turns shapes into leaves and one set expression. Text and pixels are left to others.
+
+mod build;
+mod extent;
+mod files;
+mod lower;
+mod samples;
+
+use std::path::PathBuf;
+
+use crate::csg::{Expr, Object};
+use crate::diag::{Diagnostic, Fault};
+use crate::geom::Aabb;
+use crate::scene::{BuildError, Call, Catalog, Scene};
+use crate::shot::settings::{self, Overrides};
+use crate::shot::{Camera, Light, Material, Settings, Shot, World, camera, light, material};
+use crate::solid::{Counts, table};
+
+use build::Builder;
+use lower::Lowering;
+
+/// What the command line has to say about a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Replaces the size, pixels.
+    pub size: Option<[u32; 2]>,
+    /// Replaces the samples a pixel.
+    pub samples: Option<u32>,
+    /// Replaces the seed.
+    pub seed: Option<u64>,
+    /// The part to make: half-open, pixels from the top left.
+    pub crop: Option<[u32; 4]>,
+    /// The camera, by name; the first where none is named.
+    pub camera: Option<String>,
+    /// The folder of the scene: files below it may be read.
+    pub scene_dir: PathBuf,
+    /// Other folders below which files may be read.
+    pub allow_read: Vec<PathBuf>,
+    /// Measure the solidity of every scan drawn, even where a picture does not depend on it.
+    pub measure_all: bool,
+}
+
+/// A shot, and what was met on the way to it.
+#[derive(Debug)]
+pub struct Prepared {
+    /// What is rendered.
+    pub shot: Shot,
+    /// What the user should know.
+    pub warnings: Vec<Diagnostic>,
+    /// Files that were read.
+    pub inputs: Vec<PathBuf>,
+    /// The work of measuring and sampling.
+    pub counts: Counts,
+    /// Seconds spent on reading clouds and making samples of them, if the caller's clock was lent; else zero.
+    pub scans: Vec<ScanReport>,
+}
+
+/// What was found about a scan.
+#[derive(Clone, Debug)]
+pub struct ScanReport {
+    /// Its name in the scene.
+    pub name: String,
+    /// Samples kept.
+    pub samples: usize,
+    /// What was dropped or mended, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Everything that a scene can call.
+pub fn catalog() -> Catalog {
+    let mut decls: Vec<_> = table::decls().collect();
+    decls.extend(material::decls());
+    decls.extend([camera::DECL, light::DECL, settings::DECL]);
+    Catalog { decls }
+}
+
+/// Builds, places and bounds what a scene draws.
+///
+/// Errors are about the scene, its files and the options; the first decides the exit code.
+pub fn prepare(scene: &Scene, options: &Options) -> Result<Prepared, Vec<Diagnostic>> {
+    let mut errors = Vec::new();
+    let settings = keep(&mut errors, settings_of(scene, options));
+    let materials = keep(&mut errors, materials_of(scene));
+    let lights = keep(&mut errors, lights_of(scene));
+    let chosen = keep(&mut errors, camera_of(scene, options.camera.as_deref()));
+    let mut builder = Builder::new(options);
+    let world = world(scene, &mut builder, options.measure_all, materials.as_ref().map_or(0, Vec::len));
+    let world = world.map_err(|more| errors.extend(more)).ok();
+    let (Some(settings), Some(materials), Some(lights), Some(chosen), Some(world)) =
+        (settings, materials, lights, chosen, world)
+    else {
+        return Err(errors);
+    };
+    let camera = chosen.unwrap_or_else(|| Camera::fit(world.bounds()));
+    let shot = Shot { world, camera, lights, materials, settings };
+    let Builder { warnings, inputs, counts, scans, .. } = builder;
+    Ok(Prepared { shot, warnings, inputs, counts, scans })
+}
+
+fn keep<T>(errors: &mut Vec<Diagnostic>, result: Result<T, Diagnostic>) -> Option<T> {
+    result.map_err(|e| errors.push(e)).ok()
+}
+
+/// A builder's complaint as a diagnostic at its argument.
+fn complaint(call: &Call, e: BuildError) -> Diagnostic {
+    Diagnostic::error("E0407", e.message).at(call.place(e.param), "").help(e.help)
+}
+
+fn settings_of(scene: &Scene, o: &Options) -> Result<Settings, Diagnostic> {
+    let call = scene.render.as_ref();
+    let built = call.map(|call| settings::build(call).map_err(|e| complaint(call, e)));
+    let mut settings = built.transpose()?.unwrap_or_default();
+    let overrides = Overrides { size: o.size, samples: o.samples, seed: o.seed, crop: o.crop };
+    settings.apply(&overrides).map_err(|e| {
+        let fault = if e.param == "crop" { Fault::Usage } else { Fault::Input };
+        Diagnostic::error("E0407", e.message).help(e.help).fault(fault)
+    })?;
+    Ok(settings)
+}
+
+fn materials_of(scene: &Scene) -> Result<Vec<Material>, Diagnostic> {
+    scene.materials.iter().map(|call| material::build(call).map_err(|e| complaint(call, e))).collect()
+}
+
+fn lights_of(scene: &Scene) -> Result<Vec<Light>, Diagnostic> {
+    let lights = scene.lights.iter().map(|named| &named.call);
+    lights.map(|call| light::build(call).map_err(|e| complaint(call, e))).collect()
+}
+
+/// The camera asked for, or the first; `None` where the scene has none.
+fn camera_of(scene: &Scene, name: Option<&str>) -> Result<Option<Camera>, Diagnostic> {
+    let found = match name {
+        None => scene.cameras.first(),
+        Some(name) => {
+            let named = scene.cameras.iter().find(|c| c.name.as_deref() == Some(name));
+            Some(named.ok_or_else(|| unknown_camera(scene, name))?)
+        }
+    };
+    let build = |call| camera::build(call).map_err(|e| complaint(call, e));
+    found.map(|named| build(&named.call)).transpose()
+}
+
+fn unknown_camera(scene: &Scene, name: &str) -> Diagnostic {
+    let known: Vec<&str> = scene.cameras.iter().filter_map(|c| c.name.as_deref()).collect();
+    let error = Diagnostic::error("E0403", format!("the scene has no camera `{name}`")).fault(Fault::Usage);
+    match crate::diag::nearest(name, known.iter().copied()) {
+        Some(near) => error.help(format!("did you mean `{near}`?")),
+        None if known.is_empty() => error.help("none of its cameras has a name"),
+        None => error.help(format!("its cameras are {}", known.join(", "))),
+    }
+}
+
+/// All that is drawn.
+fn world(
+    scene: &Scene,
+    builder: &mut Builder,
+    measure_all: bool,
+    bare: usize,
+) -> Result<World, Vec<Diagnostic>> {
+    let mut lowering = Lowering::new(builder, measure_all);
+    let mut errors = Vec::new();
+    let mut solids = Vec::new();
+    let mut bounds = Aabb::EMPTY;
+    for draw in &scene.draws {
+        match lowering.draw(&draw.shape) {
+            Ok(drawn) => {
+                if let Some(expr) = drawn.solid {
+                    solids.push(expr);
+                }
+                if drawn.bounds.is_finite() {
+                    bounds = bounds.union(drawn.bounds);
+                }
+            }
+            Err(e) => errors.push(e),
+        }
+    }
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    let Lowering { leaves, sheets, .. } = lowering;
+    Ok(World::new(Object::new(leaves, &Expr::Or(solids)), sheets, bounds, bare as u32))
+}

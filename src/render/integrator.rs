@@ -41,7 +41,7 @@ impl<'a, S: Scenery> Painter<'a, S> {
                 pixel += 1;
             }
         }
-        Ok((film, tracer.rays, tracer.scratch.counts))
+        Ok((film, tracer.rays, tracer.scratch.solid.counts))
     }
 
     /// Paints a pixel of the whole picture to a place of a film.

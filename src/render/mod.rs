@@ -151,10 +151,10 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::csg::Boundary;
+    use crate::csg::{Boundary, Scratch};
     use crate::geom::{Aabb, Interval, Ray};
     use crate::shot::{Hit, Surface};
-    use crate::solid::{Crossing, Scratch};
+    use crate::solid::Crossing;
 
     /// Meets every ray that goes to the right, facing it; the sky is half covered.
     struct Screen;
@@ -165,9 +165,10 @@ mod tests {
         }
 
         fn first(&self, ray: &Ray, _: Interval, scratch: &mut Scratch) -> Option<Hit> {
-            scratch.counts.leaf_queries += 1;
+            scratch.solid.counts.leaf_queries += 1;
             let crossing = Crossing::exact(1.0, true, 0);
-            let boundary = Boundary { t: 1.0, leaf: 0, crossing, flipped: false, filler: None };
+            let normal = -ray.dir.normalize();
+            let boundary = Boundary { t: 1.0, leaf: 0, crossing, normal, flipped: false, filler: None };
             (0.0 < ray.dir.x).then_some(Hit { boundary, entering: true, sheet: false })
         }
 
@@ -175,9 +176,8 @@ mod tests {
             0.0 < ray.dir.z
         }
 
-        fn surface(&self, ray: &Ray, hit: &Hit, _: &mut Scratch) -> Surface {
-            let normal = -ray.dir.normalize();
-            Surface { point: ray.at(hit.boundary.t), normal, material: 0, offset: 0.0 }
+        fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+            Surface { point: ray.at(hit.boundary.t), normal: hit.boundary.normal, material: 0, offset: 0.0 }
         }
     }
 

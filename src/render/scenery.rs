@@ -1,9 +1,9 @@
 //! What an integrator asks of the world, as a trait, so that tests can render closed forms without it; and
 //! the counting of rays.
 
+use crate::csg::Scratch;
 use crate::geom::{Aabb, Interval, Ray};
 use crate::shot::{Hit, Surface, World};
-use crate::solid::Scratch;
 
 /// Something that answers rays.
 pub trait Scenery: Sync {
@@ -17,7 +17,7 @@ pub trait Scenery: Sync {
     fn blocked(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> bool;
 
     /// The surface of a hit.
-    fn surface(&self, ray: &Ray, hit: &Hit, scratch: &mut Scratch) -> Surface;
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface;
 }
 
 impl Scenery for World {
@@ -33,8 +33,8 @@ impl Scenery for World {
         World::blocked(self, ray, range, scratch)
     }
 
-    fn surface(&self, ray: &Ray, hit: &Hit, scratch: &mut Scratch) -> Surface {
-        World::surface(self, ray, hit, scratch)
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        World::surface(self, ray, hit)
     }
 }
 
@@ -88,7 +88,7 @@ impl<'a, S: Scenery> Tracer<'a, S> {
     pub fn see(&mut self, ray: &Ray) -> Option<Seen> {
         self.rays.camera += 1;
         let hit = self.scenery.first(ray, Interval::AHEAD, &mut self.scratch)?;
-        let surface = self.scenery.surface(ray, &hit, &mut self.scratch);
+        let surface = self.scenery.surface(ray, &hit);
         let away = if hit.sheet { 0.0 < surface.normal.dot(ray.dir) } else { !hit.entering };
         Some(Seen { hit, surface, normal: if away { -surface.normal } else { surface.normal } })
     }

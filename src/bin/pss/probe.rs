@@ -4,12 +4,12 @@ use std::fmt::Write;
 use std::path::Path;
 
 use glam::DVec3;
+use pss::csg::Scratch;
 use pss::csg::{Boundary, Span, Spans};
 use pss::diag::{Diagnostic, Fault};
 use pss::geom::{Interval, Ray};
 use pss::prepare::Options;
 use pss::shot::{Hit, Shot, World};
-use pss::solid::Scratch;
 use pss::source::{self, SourceMap};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -24,7 +24,8 @@ const BATCH: usize = 4096;
 /// Runs the command.
 pub fn run(args: &ProbeArgs, console: &Console) -> Result<(), Failure> {
     let rays = args.rays.as_deref().map(read_rays).transpose()?;
-    let loaded = load::load(&args.scene, Options::default(), false, console)?;
+    let loaded =
+        load::load(&args.scene, Options { measure_all: true, ..Options::default() }, false, console)?;
     let rays = match (rays, args.ray, args.pixel) {
         (Some(rays), ..) => rays,
         (None, Some(ray), _) => vec![ray],
@@ -121,21 +122,21 @@ impl<'a> Answer<'a> {
         world.spans(ray, Interval::AHEAD, scratch, &mut spans);
         let mut sheets = Vec::new();
         world.sheets(ray, Interval::AHEAD, scratch, &mut sheets);
-        let mut end = |boundary: Option<Boundary>, entering: bool| {
-            boundary.map(|boundary| End::of(world, ray, &Hit { boundary, entering, sheet: false }, scratch))
+        let end = |boundary: Option<Boundary>, entering: bool| {
+            boundary.map(|boundary| End::of(world, ray, &Hit { boundary, entering, sheet: false }))
         };
         let spans = spans
             .iter()
             .map(|Span { enter, exit }| SpanAnswer { enter: end(*enter, true), exit: end(*exit, false) })
             .collect();
-        let sheets = sheets.iter().map(|hit| End::of(world, ray, hit, scratch)).collect();
+        let sheets = sheets.iter().map(|hit| End::of(world, ray, hit)).collect();
         Answer { ray: index, spans, sheets }
     }
 }
 
 impl<'a> End<'a> {
-    fn of(world: &'a World, ray: &Ray, hit: &Hit, scratch: &mut Scratch) -> End<'a> {
-        let surface = world.surface(ray, hit, scratch);
+    fn of(world: &'a World, ray: &Ray, hit: &Hit) -> End<'a> {
+        let surface = world.surface(ray, hit);
         End {
             t: hit.boundary.t,
             err: hit.boundary.crossing.err,

@@ -35,8 +35,8 @@ const LEVEL: f64 = 0.5;
 
 impl PointSet {
     /// The surface with its holes capped: a [`Body::Solid`]. A hole is given by the samples on its rim, as indices
-    /// into the lists that the surface was made from.
-    pub fn closed(mut self, rims: &[Vec<u32>]) -> PointSet {
+    /// into the lists that the surface was made from. The samples are shared.
+    pub fn closed(&self, rims: &[Vec<u32>]) -> PointSet {
         let mut place = vec![0u32; self.samples.points.len()];
         for (i, original) in self.samples.original.iter().enumerate() {
             place[*original as usize] = i as u32;
@@ -49,9 +49,7 @@ impl PointSet {
         };
         let boxes: Vec<Aabb> = rims.iter().map(grown).collect();
         let rim = self.samples.points.iter().map(|p| boxes.iter().any(|b| b.contains(*p))).collect();
-        self.closure = Some(Closure { boxes, rim });
-        self.body = Body::Solid;
-        self
+        PointSet { closure: Some(Closure { boxes, rim }), ..self.with_body(Body::Solid) }
     }
 
     /// Appends the caps of a gap, ascending; `ends` are the states at its two ends.

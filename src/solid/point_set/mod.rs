@@ -10,8 +10,8 @@ mod probe;
 mod roots;
 mod solidity;
 
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use glam::{DAffine3, DVec3};
 
@@ -66,11 +66,11 @@ impl Default for Options {
 }
 
 /// A point set surface.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct PointSet {
     /// Tells the lines of different surfaces apart in a thread's scratch; no result depends on it.
     id: u64,
-    samples: Hierarchy,
+    samples: Arc<Hierarchy>,
     kernel: Kernel,
     degree: usize,
     /// A bound of the error along the normal, world length.
@@ -78,14 +78,13 @@ pub struct PointSet {
     bounds: Aabb,
     body: Body,
     closure: Option<Closure>,
-    winding: OnceLock<Winding>,
+    winding: Arc<OnceLock<Winding>>,
 }
 
 impl PointSet {
     /// Builds the surface as a [`Body::Sheet`]; see [`PointSet::measure`] and [`PointSet::closed`].
     /// Normals are outward and of unit length, widths world lengths; one of each a point.
     pub fn new(points: &[DVec3], normals: &[DVec3], widths: &[f64], options: &Options) -> PointSet {
-        static NEXT: AtomicU64 = AtomicU64::new(0);
         let bounds = Aabb::of_points(points.iter().copied());
         let diagonal = bounds.diagonal();
         let hierarchy = Hierarchy::new(points, normals, widths);
@@ -97,22 +96,21 @@ impl PointSet {
             Kernel::Compact(Compact)
         };
         PointSet {
-            id: NEXT.fetch_add(1, Ordering::Relaxed),
-            samples: hierarchy,
+            id: next_id(),
+            samples: Arc::new(hierarchy),
             kernel,
             degree: options.degree,
             tolerance: options.tolerance * diagonal,
             bounds,
             body: Body::Sheet,
             closure: None,
-            winding: OnceLock::new(),
+            winding: Arc::default(),
         }
     }
 
-    /// The same surface with a stated body.
-    pub fn with_body(mut self, body: Body) -> PointSet {
-        self.body = body;
-        self
+    /// The same surface with a stated body; the samples are shared.
+    pub fn with_body(&self, body: Body) -> PointSet {
+        PointSet { id: next_id(), body, ..self.clone() }
     }
 
     /// The samples, in the order of the hierarchy.
@@ -128,7 +126,7 @@ impl PointSet {
     /// The winding number of the samples, built when first asked.
     fn winding(&self) -> &Winding {
         self.winding.get_or_init(|| {
-            let Hierarchy { points, normals, widths, .. } = &self.samples;
+            let Hierarchy { points, normals, widths, .. } = &*self.samples;
             let table = Neighbours::new(points).table(AREA_NEIGHBOURS);
             // At a rim a sample stands for no more than a disc of half its width.
             let reach: Vec<f64> = widths.iter().map(|h| 0.5 * h).collect();
@@ -141,6 +139,11 @@ impl PointSet {
     fn near_rim(&self, sample: usize) -> bool {
         self.closure.as_ref().is_some_and(|c| c.rim[sample])
     }
+}
+
+fn next_id() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
 impl Solid for PointSet {

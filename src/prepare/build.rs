@@ -1,0 +1,177 @@
+//! Solids from calls, and scans from clouds, each built once however often its shape is used.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::{Options, ScanReport, complaint, files};
+use crate::cloud::holes::{Hole, holes};
+use crate::cloud::{Cloud, CloudError, CloudFault, NormalSource, SampleOptions, Samples, ply};
+use crate::diag::{Diagnostic, Fault};
+use crate::scene::{Call, ShapeNode, Value};
+use crate::solid::point_set::{PointSet, Solidity};
+use crate::solid::{Body, Counts, Solid, points};
+
+/// A scan, with what has been found out about it so far.
+#[derive(Debug)]
+struct Scan {
+    samples: Samples,
+    surface: Arc<PointSet>,
+    measured: Option<(Solidity, Arc<PointSet>)>,
+    holes: Option<Vec<Hole>>,
+    /// Closed with holes up to so wide, own units.
+    closed: Vec<(f64, Arc<PointSet>)>,
+}
+
+/// What a leaf has become.
+#[derive(Clone, Debug)]
+pub(super) enum Built {
+    /// A closed form.
+    Exact(Arc<dyn Solid>),
+    /// A scan.
+    Scan(ScanId),
+}
+
+/// A scan of a [`Builder`].
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct ScanId(usize);
+
+/// Builds calls and keeps what it has built.
+#[derive(Debug)]
+pub(super) struct Builder<'a> {
+    options: &'a Options,
+    /// By the address of the node, which lives as long as the scene.
+    built: HashMap<usize, Built>,
+    scan: Vec<Scan>,
+    /// What the user should know.
+    pub warnings: Vec<Diagnostic>,
+    /// Files that were read.
+    pub inputs: Vec<PathBuf>,
+    /// The work of measuring.
+    pub counts: Counts,
+    /// What was found about each scan.
+    pub scans: Vec<ScanReport>,
+}
+
+impl<'a> Builder<'a> {
+    /// Nothing built yet.
+    pub fn new(options: &'a Options) -> Builder<'a> {
+        Builder {
+            options,
+            built: HashMap::new(),
+            scan: Vec::new(),
+            warnings: Vec::new(),
+            inputs: Vec::new(),
+            counts: Counts::default(),
+            scans: Vec::new(),
+        }
+    }
+
+    /// What a node has been built to.
+    pub fn known(&self, node: &ShapeNode) -> Option<Built> {
+        self.built.get(&(std::ptr::from_ref(node) as usize)).cloned()
+    }
+
+    /// Remembers it.
+    pub fn keep(&mut self, node: &ShapeNode, built: Built) -> Built {
+        self.built.insert(std::ptr::from_ref(node) as usize, built.clone());
+        built
+    }
+
+    /// The cloud that a call of `points` names.
+    pub fn read_cloud(&mut self, call: &Call) -> Result<Cloud, Diagnostic> {
+        let Some(Value::Path { text, base, from_command_line }) = call.get("source") else {
+            let error = Diagnostic::error("E0402", "`points` needs a file or a solid").at(call.at, "");
+            return Err(error.help("write `points(\"scan.ply\")` or `points(sphere(r: 1), samples: 2000)`"));
+        };
+        let at = call.place("source");
+        let Options { scene_dir, allow_read, .. } = self.options;
+        let path = files::resolve(text, base, *from_command_line, scene_dir, allow_read, at)?;
+        self.inputs.push(path.clone());
+        ply::read_path(&path).map_err(|e| cloud_complaint(call, &format!("`{text}`"), e))
+    }
+
+    /// Makes a surface of a cloud.
+    pub fn scan(&mut self, call: &Call, name: &str, cloud: Cloud) -> Result<ScanId, Diagnostic> {
+        let options = SampleOptions {
+            smoothing: call.number("smoothing").unwrap_or(1.0),
+            width: call.number("h"),
+            normals: match call.text("normals") {
+                Some("estimate") => NormalSource::Estimate,
+                _ => NormalSource::File,
+            },
+            keep_strays: false,
+        };
+        let samples = Samples::new(cloud, &options).map_err(|e| cloud_complaint(call, "the cloud", e))?;
+        let Samples { points, normals, widths, notes, .. } = &samples;
+        let surface = Arc::new(PointSet::new(points, normals, widths, &points::options(call)));
+        self.scans.push(ScanReport { name: name.to_owned(), samples: points.len(), notes: notes.clone() });
+        self.scan.push(Scan { samples, surface, measured: None, holes: None, closed: Vec::new() });
+        Ok(ScanId(self.scan.len() - 1))
+    }
+
+    /// The surface as it stands: a sheet, its solidity not asked for.
+    pub fn unmeasured(&self, id: ScanId) -> Arc<PointSet> {
+        self.scan[id.0].surface.clone()
+    }
+
+    /// The surface with its solidity measured.
+    pub fn measured(&mut self, id: ScanId) -> (Solidity, Arc<PointSet>) {
+        let scan = &mut self.scan[id.0];
+        if scan.measured.is_none() {
+            let solidity = scan.surface.measure();
+            self.counts.add(&solidity.counts);
+            let surface = scan.surface.with_body(solidity.body());
+            scan.measured = Some((solidity, Arc::new(surface)));
+        }
+        let (solidity, surface) = scan.measured.as_ref().unwrap_or_else(|| unreachable!("just measured"));
+        (*solidity, surface.clone())
+    }
+
+    /// The surface with its holes up to `max_hole` wide capped, or the width of the widest one. Own units.
+    pub fn closed(&mut self, id: ScanId, max_hole: f64) -> Result<Arc<PointSet>, f64> {
+        let scan = &mut self.scan[id.0];
+        if let Some((_, surface)) = scan.closed.iter().find(|c| c.0 == max_hole) {
+            return Ok(surface.clone());
+        }
+        let found = scan.holes.get_or_insert_with(|| holes(&scan.samples));
+        let widest = found.iter().map(|h| h.width).fold(0.0, f64::max);
+        if max_hole < widest {
+            return Err(widest);
+        }
+        let rims: Vec<Vec<u32>> = found.iter().map(|h| h.rim.clone()).collect();
+        let surface = Arc::new(scan.surface.closed(&rims));
+        scan.closed.push((max_hole, surface.clone()));
+        Ok(surface)
+    }
+}
+
+impl Solidity {
+    /// What to say beside a place that wants an inside.
+    pub(super) fn complaint(&self) -> String {
+        let share = 100.0 * self.odd_share();
+        debug_assert!(self.body() == Body::Sheet);
+        format!("a Sheet: {share:.1} % of test lines cross it an odd number of times")
+    }
+}
+
+/// A closed form, or a complaint at its argument.
+pub(super) fn exact(
+    call: &Call,
+    build: fn(&Call) -> Result<Arc<dyn Solid>, crate::scene::BuildError>,
+) -> Result<Built, Diagnostic> {
+    build(call).map(Built::Exact).map_err(|e| complaint(call, e))
+}
+
+fn cloud_complaint(call: &Call, what: &str, e: CloudError) -> Diagnostic {
+    let (code, fault) = match e.kind {
+        CloudFault::Missing => ("E0601", Fault::Missing),
+        CloudFault::Bad => ("E0605", Fault::Input),
+        CloudFault::Io => ("E0606", Fault::Io),
+    };
+    let error = Diagnostic::error(code, format!("{what}: {e}")).at(call.place("source"), "").fault(fault);
+    match e.help {
+        Some(help) => error.help(help),
+        None => error,
+    }
+}

@@ -1,0 +1,49 @@
+//! Boxes around shapes before they are placed: what `.fit` measures.
+
+use glam::DAffine3;
+
+use super::lower::Lowering;
+use crate::diag::Diagnostic;
+use crate::geom::Aabb;
+use crate::scene::{BooleanOp, Operand, Shape, ShapeKind};
+
+impl Lowering<'_, '_> {
+    /// A box around the image of a shape: tight for leaves and unions; for the other operators that of what they are
+    /// cut from. Unbounded where the shape is.
+    pub(super) fn extent(&mut self, shape: &Shape, to_from: &DAffine3) -> Result<Aabb, Diagnostic> {
+        match &shape.0.kind {
+            ShapeKind::Leaf { .. } => {
+                let solid = self.any_solid(shape)?;
+                Ok(if solid.bounds().is_finite() { solid.extent_under(to_from) } else { Aabb::ALL })
+            }
+            ShapeKind::Transform { world_from_local, child } => {
+                self.extent(child, &(*to_from * *world_from_local))
+            }
+            ShapeKind::Fit { child, .. } => {
+                let fitted = self.fit(shape)?;
+                self.extent(child, &(*to_from * fitted))
+            }
+            ShapeKind::With { child, .. } | ShapeKind::Close { child, .. } => self.extent(child, to_from),
+            ShapeKind::Boolean { op, operands } => self.extent_of(*op, operands, to_from),
+        }
+    }
+
+    fn extent_of(
+        &mut self,
+        op: BooleanOp,
+        operands: &[Operand],
+        to_from: &DAffine3,
+    ) -> Result<Aabb, Diagnostic> {
+        let used = match op {
+            BooleanOp::Complement => return Ok(Aabb::ALL),
+            BooleanOp::Difference => &operands[..1.min(operands.len())],
+            _ => operands,
+        };
+        let mut all = if op == BooleanOp::Intersection { Aabb::ALL } else { Aabb::EMPTY };
+        for operand in used {
+            let next = self.extent(&operand.shape, to_from)?;
+            all = if op == BooleanOp::Intersection { all.intersection(next) } else { all.union(next) };
+        }
+        Ok(all)
+    }
+}

@@ -1,0 +1,330 @@
+//! Shapes to leaves and one set expression over them: transforms pushed down, materials handed out, operands checked
+//! to have an inside.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::build::{Builder, Built, exact};
+use super::samples::{Sampling, sample};
+use crate::cloud::Cloud;
+use crate::csg::{Expr, Leaf, Object};
+use crate::diag::Diagnostic;
+use crate::geom::{Aabb, Placement};
+use crate::scene::{BooleanOp, Call, FitTo, MaterialId, Operand, Shape, ShapeKind, Value};
+use crate::solid::table::{self, Build};
+use crate::solid::{Body, Solid};
+use crate::source::Span;
+
+/// What a `draw` has become.
+pub(super) struct Drawn {
+    /// The expression of its solids, if it is one.
+    pub solid: Option<Expr>,
+    /// A box around it.
+    pub bounds: Aabb,
+}
+
+/// Leaves gathered from shapes.
+pub(super) struct Lowering<'b, 'o> {
+    builder: &'b mut Builder<'o>,
+    measure_all: bool,
+    /// Leaves that expressions refer to.
+    pub leaves: Vec<Leaf>,
+    /// Sheets drawn.
+    pub sheets: Vec<Leaf>,
+}
+
+/// What a node inherits from above.
+#[derive(Clone, Copy)]
+struct Context {
+    world_from_local: DAffine3,
+    material: Option<MaterialId>,
+    cutter: bool,
+    /// Whether an operator above asks for an inside, with the sign and the place of the operand.
+    wanted: Option<(BooleanOp, Span)>,
+    /// A `.close` above: the widest hole, in units of the frame of its own node, and that frame.
+    close: Option<(f64, DAffine3, Span)>,
+}
+
+const TOP: Context = Context {
+    world_from_local: DAffine3::IDENTITY,
+    material: None,
+    cutter: false,
+    wanted: None,
+    close: None,
+};
+
+/// A lowered shape.
+enum Lowered {
+    Solid(Expr),
+    Sheets(Vec<Leaf>),
+}
+
+impl<'b, 'o> Lowering<'b, 'o> {
+    /// Nothing gathered yet.
+    pub fn new(builder: &'b mut Builder<'o>, measure_all: bool) -> Lowering<'b, 'o> {
+        Lowering { builder, measure_all, leaves: Vec::new(), sheets: Vec::new() }
+    }
+
+    /// Lowers what is drawn.
+    pub fn draw(&mut self, shape: &Shape) -> Result<Drawn, Diagnostic> {
+        let bounds = self.extent(shape, &DAffine3::IDENTITY)?;
+        let solid = match self.lower(shape, TOP)? {
+            Lowered::Solid(expr) => Some(expr),
+            Lowered::Sheets(sheets) => {
+                self.sheets.extend(sheets);
+                None
+            }
+        };
+        Ok(Drawn { solid, bounds })
+    }
+
+    fn lower(&mut self, shape: &Shape, context: Context) -> Result<Lowered, Diagnostic> {
+        match &shape.0.kind {
+            ShapeKind::Leaf { call, name } => self.leaf(shape, call, name, context),
+            ShapeKind::Transform { world_from_local, child } => {
+                let world_from_local = context.world_from_local * *world_from_local;
+                self.lower(child, Context { world_from_local, ..context })
+            }
+            ShapeKind::Fit { child, .. } => {
+                let fitted = self.fit(shape)?;
+                let world_from_local = context.world_from_local * fitted;
+                self.lower(child, Context { world_from_local, ..context })
+            }
+            ShapeKind::With { material, child } => {
+                // The innermost `.with` is nearest to the leaf; an outer one leaves it alone.
+                self.lower(child, Context { material: Some(*material), ..context })
+            }
+            ShapeKind::Close { max_hole, child } => {
+                let close = Some((max_hole.unwrap_or(f64::INFINITY), context.world_from_local, shape.0.at));
+                self.lower(child, Context { close, ..context })
+            }
+            ShapeKind::Boolean { op, operands } => self.boolean(shape, *op, operands, context),
+        }
+    }
+
+    fn boolean(
+        &mut self,
+        shape: &Shape,
+        op: BooleanOp,
+        operands: &[Operand],
+        context: Context,
+    ) -> Result<Lowered, Diagnostic> {
+        if let Some((_, _, at)) = context.close {
+            let error = Diagnostic::error("E0304", "only a scan has holes to close").at(at, "");
+            return Err(error
+                .at(shape.0.at, "this is a combination of shapes")
+                .help("close the scan before combining it"));
+        }
+        let mut parts = Vec::with_capacity(operands.len());
+        for (i, operand) in operands.iter().enumerate() {
+            let taken = op == BooleanOp::Complement || (op == BooleanOp::Difference && 0 < i);
+            let context = Context {
+                cutter: context.cutter || taken,
+                // A cutter keeps its own material or shows the base's: `.with` above stops here.
+                material: if taken { None } else { context.material },
+                wanted: Some((op, operand.at)),
+                ..context
+            };
+            parts.push((self.lower(&operand.shape, context)?, operand.at));
+        }
+        if op == BooleanOp::Union && parts.iter().any(|p| matches!(p.0, Lowered::Sheets(_))) {
+            return joined_sheets(parts);
+        }
+        let mut exprs = Vec::with_capacity(parts.len());
+        for (part, at) in parts {
+            match part {
+                Lowered::Solid(expr) => exprs.push(expr),
+                Lowered::Sheets(_) => return Err(no_inside(op, at, "a Sheet: an open surface")),
+            }
+        }
+        Ok(Lowered::Solid(combined(op, exprs)))
+    }
+
+    fn leaf(
+        &mut self,
+        shape: &Shape,
+        call: &Call,
+        name: &str,
+        context: Context,
+    ) -> Result<Lowered, Diagnostic> {
+        let solid = self.solid(shape, context)?;
+        let place = Placement::new(context.world_from_local).ok_or_else(|| {
+            Diagnostic::error("E0505", "a transform leaves nothing of this shape, or too little to invert")
+                .at(call.at, "")
+                .help("no factor of a `.scale` may be zero or a million million times smaller than another")
+        })?;
+        let mut leaf = Leaf::new(solid.clone(), place);
+        leaf.name = name.into();
+        leaf.material = context.material.map(|m| m.0);
+        leaf.cutter = context.cutter;
+        leaf.rank = u64::from(call.at.file.0) << 32 | u64::from(call.at.start);
+        if solid.body() == Body::Sheet {
+            return Ok(Lowered::Sheets(vec![leaf]));
+        }
+        self.leaves.push(leaf);
+        Ok(Lowered::Solid(Expr::Leaf(self.leaves.len() as u32 - 1)))
+    }
+
+    /// The solid of a leaf, closed or measured as what stands above it asks.
+    fn solid(&mut self, shape: &Shape, context: Context) -> Result<Arc<dyn Solid>, Diagnostic> {
+        let id = match (self.built(shape)?, context.close) {
+            (Built::Exact(_), Some((_, _, at))) => {
+                return Err(Diagnostic::error("E0304", "only a scan has holes to close").at(at, ""));
+            }
+            (Built::Exact(solid), None) => return Ok(solid),
+            (Built::Scan(id), Some((max_hole, frame, at))) => {
+                // Lengths of the frame that `.close` is written in, taken to the scan's own.
+                let scale = mean_scale(&(frame.inverse() * context.world_from_local));
+                return match self.builder.closed(id, max_hole / scale) {
+                    Ok(surface) => Ok(surface),
+                    Err(widest) => Err(too_wide(at, max_hole, widest * scale)),
+                };
+            }
+            (Built::Scan(id), None) => id,
+        };
+        if context.wanted.is_none() && !self.measure_all {
+            return Ok(self.builder.unmeasured(id));
+        }
+        let (solidity, surface) = self.builder.measured(id);
+        match context.wanted {
+            Some((op, at)) if op != BooleanOp::Union && surface.body() == Body::Sheet => {
+                Err(no_inside(op, at, &solidity.complaint()))
+            }
+            _ => Ok(surface),
+        }
+    }
+
+    /// The solid of a leaf, whatever its body.
+    pub(super) fn any_solid(&mut self, shape: &Shape) -> Result<Arc<dyn Solid>, Diagnostic> {
+        Ok(match self.built(shape)? {
+            Built::Exact(solid) => solid,
+            Built::Scan(id) => self.builder.unmeasured(id),
+        })
+    }
+
+    fn built(&mut self, shape: &Shape) -> Result<Built, Diagnostic> {
+        if let Some(known) = self.builder.known(&shape.0) {
+            return Ok(known);
+        }
+        let ShapeKind::Leaf { call, name } = &shape.0.kind else {
+            return Err(Diagnostic::error("E0900", "this shape is no primitive").at(shape.0.at, ""));
+        };
+        let primitive = table::find(&call.word);
+        let built = match primitive.map(|p| p.build) {
+            Some(Build::Exact(build)) => exact(call, build)?,
+            Some(Build::Points) => {
+                let cloud = match call.get("source") {
+                    Some(Value::Shape(solid)) => self.sampled(call, solid)?,
+                    _ => self.builder.read_cloud(call)?,
+                };
+                Built::Scan(self.builder.scan(call, name, cloud)?)
+            }
+            None => return Err(Diagnostic::error("E0900", "nobody builds this primitive").at(call.at, "")),
+        };
+        Ok(self.builder.keep(&shape.0, built))
+    }
+
+    /// Samples of a solid.
+    fn sampled(&mut self, call: &Call, solid: &Shape) -> Result<Cloud, Diagnostic> {
+        let at = call.place("source");
+        let Some(count) = call.number("samples") else {
+            let error =
+                Diagnostic::error("E0402", "samples of a solid need a number: `samples:`").at(call.at, "");
+            return Err(error.help("write `points(sphere(r: 1), samples: 2000)`"));
+        };
+        let mut own = Lowering::new(self.builder, true);
+        let bounds = own.extent(solid, &DAffine3::IDENTITY)?;
+        let Lowered::Solid(expr) = own.lower(solid, TOP)? else {
+            return Err(Diagnostic::error("E0301", "only a solid can be sampled").at(at, "a Sheet"));
+        };
+        let object = Object::new(own.leaves, &expr);
+        let sampling = Sampling {
+            count: count as usize,
+            noise: call.number("noise").unwrap_or(0.0),
+            seed: call.number("seed").unwrap_or(0.0) as u64,
+        };
+        sample(&object, &bounds, &sampling).map_err(|e| Diagnostic::error("E0306", e.to_string()).at(at, ""))
+    }
+
+    /// The map of a `.fit` node.
+    pub(super) fn fit(&mut self, shape: &Shape) -> Result<DAffine3, Diagnostic> {
+        let ShapeKind::Fit { at, to, child } = &shape.0.kind else { return Ok(DAffine3::IDENTITY) };
+        let bounds = self.extent(child, &DAffine3::IDENTITY)?;
+        let (want, have) = match to {
+            FitTo::Height(h) => (*h, bounds.size().z),
+            FitTo::Size(s) => (*s, bounds.size().max_element()),
+        };
+        let scale = want / have;
+        if bounds.is_empty() || !bounds.is_finite() || !scale.is_finite() || scale <= 0.0 {
+            let error = Diagnostic::error(
+                "E0305",
+                "a shape without finite bounds, or without extent, cannot be fitted",
+            );
+            return Err(error.at(shape.0.at, "").help("fit what is bounded, and place the rest by `.move`"));
+        }
+        let bottom = DVec3::new(bounds.center().x, bounds.center().y, bounds.min.z);
+        Ok(DAffine3 { matrix3: DMat3::from_diagonal(DVec3::splat(scale)), translation: *at - scale * bottom })
+    }
+}
+
+fn combined(op: BooleanOp, mut exprs: Vec<Expr>) -> Expr {
+    match op {
+        BooleanOp::Union => Expr::Or(exprs),
+        BooleanOp::Intersection => Expr::And(exprs),
+        BooleanOp::Xor => Expr::Xor(exprs),
+        BooleanOp::Complement => Expr::Not(Box::new(Expr::Or(exprs))),
+        BooleanOp::Difference if exprs.is_empty() => Expr::Or(exprs),
+        BooleanOp::Difference => {
+            let cutters = exprs.split_off(1);
+            exprs.push(Expr::Not(Box::new(Expr::Or(cutters))));
+            Expr::And(exprs)
+        }
+    }
+}
+
+/// A union of sheets; with a solid among them an error.
+fn joined_sheets(parts: Vec<(Lowered, Span)>) -> Result<Lowered, Diagnostic> {
+    let mut sheets = Vec::new();
+    let sheet_at = parts.iter().find(|p| matches!(p.0, Lowered::Sheets(_))).map(|p| p.1);
+    for (part, at) in parts {
+        match part {
+            Lowered::Sheets(more) => sheets.extend(more),
+            Lowered::Solid(_) => {
+                let error =
+                    Diagnostic::error("E0302", "`|` joins two solids or two sheets").at(at, "a Solid");
+                let error = sheet_at.into_iter().fold(error, |e, at| e.at(at, "a Sheet"));
+                return Err(
+                    error.help("`draw` them one by one, or close the sheet: `scan.close(max_hole: 8mm)`")
+                );
+            }
+        }
+    }
+    Ok(Lowered::Sheets(sheets))
+}
+
+fn no_inside(op: BooleanOp, at: Span, why: &str) -> Diagnostic {
+    Diagnostic::error("E0301", format!("an operand of `{}` has no inside", op.sign())).at(at, why).help(
+        "close it, `scan.close(max_hole: 8mm)`, or put a solid in its place, such as `half_space(z < 0)` for a floor",
+    )
+}
+
+fn too_wide(at: Span, max_hole: f64, widest: f64) -> Diagnostic {
+    Diagnostic::error(
+        "E0303",
+        format!("the scan has a hole {widest:.3} wide, wider than the {max_hole} allowed"),
+    )
+    .at(at, "")
+    .help(format!("write `.close(max_hole: {})` if that hole shall be capped too", round_up(widest)))
+}
+
+/// Two significant digits, upward.
+fn round_up(x: f64) -> f64 {
+    let unit = 10f64.powf(x.log10().floor() - 1.0);
+    (x / unit).ceil() * unit
+}
+
+/// How much a map stretches lengths: exactly so for similarities, on average for others.
+fn mean_scale(map: &DAffine3) -> f64 {
+    map.matrix3.determinant().abs().cbrt()
+}
