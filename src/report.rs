@@ -64,7 +64,25 @@ fn one(diagnostic: &Diagnostic, sources: &SourceMap, renderer: &Renderer) -> Str
     for note in &diagnostic.notes {
         group = group.element(Level::NOTE.message(clean(note)));
     }
-    renderer.render(&[group])
+    without_gap(&renderer.render(&[group]))
+}
+
+/// The same without the empty line of the margin that the renderer puts before help and notes.
+fn without_gap(rendered: &str) -> String {
+    let lines: Vec<&str> = rendered.lines().collect();
+    let plain: Vec<String> = lines.iter().map(|l| uncolored(l)).collect();
+    let is_gap = |i: usize| {
+        plain[i].trim() == "|" && plain.get(i + 1).is_some_and(|next| next.trim_start().starts_with("= "))
+    };
+    let kept = (0..lines.len()).filter(|i| !is_gap(*i)).map(|i| lines[i]);
+    kept.collect::<Vec<_>>().join("\n")
+}
+
+/// A line without its colours.
+fn uncolored(line: &str) -> String {
+    let mut parts = line.split('\u{1b}');
+    let first = parts.next().unwrap_or("").to_owned();
+    parts.fold(first, |plain, part| plain + part.split_once('m').map_or("", |(_, rest)| rest))
 }
 
 fn annotation<'a>(label: &'a Label, main: bool, text: &Visible) -> Annotation<'a> {

@@ -1,4 +1,4 @@
-//! What users are told, about types, values and parameters, letter by letter.
+//! What users are told, about types and values, letter by letter.
 
 mod lang_support;
 
@@ -25,7 +25,6 @@ error[E0501]: `r` wants a length, found a colour
   |
 1 | draw sphere(r: #fff)
   |                ^^^^ a colour
-  |
   = help: write a length, such as `10`
 "#
 }
@@ -38,7 +37,6 @@ error[E0502]: `angle` wants an angle, found a bare number
   |
 1 | draw sphere(r: 1).rotate_x(90)
   |                            ^^ which unit?
-  |
   = help: write `90deg`
 
 error[E0502]: `fov` wants an angle, found a bare number
@@ -46,7 +44,6 @@ error[E0502]: `fov` wants an angle, found a bare number
   |
 2 | camera(fov: 28)
   |             ^^ which unit?
-  |
   = help: write `28deg`
 "#
 }
@@ -59,7 +56,6 @@ error[E0501]: `at` wants 3 numbers, found 2
   |
 1 | draw sphere(r: 1, at: [0, 0])
   |                       ^^^^^^ 2 given
-  |
   = help: write `[x, y, z]`
 "#
 }
@@ -72,7 +68,6 @@ error[E0503]: `degree` must be a whole number from 0 to 4
   |
 1 | draw points("a.ply", degree: 5)
   |                              ^ 5
-  |
   = help: write a whole number from 0 to 4
 
 error[E0503]: `samples` must be a whole number from 1 to 1000000
@@ -80,7 +75,6 @@ error[E0503]: `samples` must be a whole number from 1 to 1000000
   |
 2 | render(samples: 1.5)
   |                 ^^^ 1.5
-  |
   = help: write a whole number from 1 to 1000000
 "#
 }
@@ -93,7 +87,6 @@ error[E0504]: `1e999` is not finite
   |
 1 | let a = 1e999
   |         ^^^^^ too large for a number
-  |
   = help: numbers reach from -1e18 to 1e18
 "#
 }
@@ -106,7 +99,6 @@ error[E0504]: `nan` is not finite
   |
 1 | let b = nan
   |         ^^^ not a number of a scene
-  |
   = help: scenes have finite numbers only
 
 error[E0504]: the result of `/` is not finite
@@ -114,7 +106,6 @@ error[E0504]: the result of `/` is not finite
   |
 2 | let c = 1 / 0
   |           ^ infinite or undefined
-  |
   = help: look for a division by zero or a root of a negative number
 
 error[E0504]: the result of `sqrt` is not finite
@@ -122,7 +113,6 @@ error[E0504]: the result of `sqrt` is not finite
   |
 3 | let d = sqrt(-1)
   |         ^^^^^^^^ infinite or undefined
-  |
   = help: look for a division by zero or a root of a negative number
 
 error[E0504]: the result of `normalize` is not finite
@@ -130,7 +120,6 @@ error[E0504]: the result of `normalize` is not finite
   |
 4 | let e = normalize([0, 0, 0])
   |         ^^^^^^^^^^^^^^^^^^^^ infinite or undefined
-  |
   = help: look for a division by zero or a root of a negative number
 "#
 }
@@ -143,7 +132,6 @@ error[E0508]: the condition is not linear
   |
 2 | draw half_space(sqrt(x) < 3)
   |                 ^^^^^^^ x, y and z may be added, and multiplied by numbers
-  |
   = help: a half-space has a flat face: `x + 2*y <= 3`
 "#
 }
@@ -156,7 +144,6 @@ error[E0503]: there is no element 3
   |
 1 | let a = [1, 2, 3][3]
   |                   ^ no such element
-  |
   = help: the list has 3 elements, from `[0]` to `[2]`
 
 error[E0501]: a number has no elements
@@ -164,7 +151,6 @@ error[E0501]: a number has no elements
   |
 2 | let b = 3[0]
   |         ^ a number
-  |
   = help: only lists have elements: `list[0]`
 "#
 }
@@ -180,7 +166,6 @@ error[E0203]: `+` cannot take a vector and a vector
   |         |      |
   |         |      does not fit its operands
   |         a vector
-  |
   = help: vectors of one size are wanted
 "#
 }
@@ -193,7 +178,6 @@ error[E0501]: `r` wants a length, found an angle
   |
 1 | draw sphere(r: 3deg)
   |                ^^^^ an angle
-  |
   = help: divide by a unit to get a number: `angle / 1deg`
 
 error[E0203]: `+` cannot take a number and an angle
@@ -204,7 +188,6 @@ error[E0203]: `+` cannot take a number and an angle
   |         | |
   |         | does not fit its operands
   |         a number
-  |
   = help: an angle has a unit: `30deg`
 "#
 }
@@ -217,7 +200,6 @@ error[E0410]: `sqrt` is called with arguments
   |
 1 | let a = sqrt
   |         ^^^^ no arguments
-  |
   = help: write `sqrt(...)`
 
 error[E0410]: a number cannot be called
@@ -227,7 +209,6 @@ error[E0410]: a number cannot be called
   |         -^^^ a call
   |         |
   |         a number
-  |
   = help: remove the arguments, or put an operator before the `(`
 
 error[E0410]: `.move` is called with arguments
@@ -235,7 +216,6 @@ error[E0410]: `.move` is called with arguments
   |
 4 | let d = sphere(r: 1).move
   |                      ^^^^ no arguments
-  |
   = help: write `.move(...)`
 "#
 }
@@ -248,7 +228,6 @@ error[E0404]: `fit` needs `height`
   |
 1 | draw sphere(r: 1).fit([0, 0, 0])
   |      ^^^^^^^^^^^^^^^^^^^^^^^^^^^ `height` is missing
-  |
   = help: write `height:` or `size:`
 
 error[E0405]: `height` and `size` are both given
@@ -258,7 +237,6 @@ error[E0405]: `height` and `size` are both given
   |                                          -        ^ the size
   |                                          |
   |                                          the height
-  |
   = help: remove one of them
 "#
 }
@@ -271,7 +249,6 @@ error[E0401]: `inch` is not a unit of length
   |
 1 | units(inch)
   |       ^^^^ unknown unit
-  |
   = help: the units are `um` `mm` `cm` `m` `km` `in` `ft`
 "#
 }
@@ -284,7 +261,6 @@ error[E0401]: `lenght` is not a type
   |
 1 | param a: lenght = 3
   |          ^^^^^^ unknown type
-  |
   = help: did you mean `length`?
 "#
 }
@@ -297,8 +273,34 @@ error[E0505]: the number is beyond the limit of 1e18
   |
 1 | draw sphere(r: 1, at: [1e19, 0, 0])
   |                        ^^^^ too large
-  |
   = help: choose larger units, such as `units(m)`
+"#
+}
+
+says! {
+    two_cameras_of_one_name_show_both: "camera a(eye: [0, 0, 1])\nlight a(intensity: 1)\ncamera a(eye: [0, 0, 2])\n",
+    r#"
+error[E0402]: `a` is defined twice
+ --> scene.pss:3:8
+  |
+1 | camera a(eye: [0, 0, 1])
+  |        - the first time
+2 | light a(intensity: 1)
+3 | camera a(eye: [0, 0, 2])
+  |        ^ the second time
+  = help: take another name for one of them
+"#
+}
+
+says! {
+    an_angle_may_be_in_no_list_of_lengths: "draw box(size: [1, 2, 3deg])\n",
+    r#"
+error[E0501]: `size` wants a number, found an angle
+ --> scene.pss:1:23
+  |
+1 | draw box(size: [1, 2, 3deg])
+  |                       ^^^^ an angle
+  = help: divide by a unit to get a number: `angle / 1deg`
 "#
 }
 
@@ -310,7 +312,6 @@ error[E0506]: `r` is negative
   |
 1 | draw sphere(r: -3)
   |                ^^ -3
-  |
   = help: a size is zero or more
 "#
 }
@@ -323,7 +324,6 @@ warning[W0101]: `r` is zero: the shape is nothing
   |
 1 | draw sphere(r: 0)
   |                ^ no size
-  |
   = help: give it a size, or leave the shape out
 "#
 }
@@ -336,7 +336,6 @@ error[E0507]: `kernel` cannot be "gausian"
   |
 1 | draw points("a.ply", kernel: "gausian")
   |                              ^^^^^^^^^ unknown word
-  |
   = help: did you mean "gaussian"?
 
 error[E0507]: `aov` cannot be "dept"
@@ -344,7 +343,6 @@ error[E0507]: `aov` cannot be "dept"
   |
 2 | render(aov: ["dept"])
   |              ^^^^^^ unknown word
-  |
   = help: did you mean "depth"?
 "#
 }
@@ -357,7 +355,6 @@ error[E0508]: the condition is not linear
   |
 1 | draw half_space(x * y < 3)
   |                   ^ x, y and z may be added, and multiplied by numbers
-  |
   = help: a half-space has a flat face: `x + 2*y <= 3`
 "#
 }
@@ -370,7 +367,6 @@ error[E0508]: the half-space is not a condition
   |
 1 | draw half_space(z)
   |                 ^ expected a comparison
-  |
   = help: write a linear condition on x, y and z: `z < 60` or `x + 2*y <= 3`
 "#
 }
@@ -383,7 +379,6 @@ error[E0510]: the scale is zero
   |
 1 | draw sphere(r: 1).scale([1, 0, 1])
   |                         ^^^^^^^^^ flattens the shape to nothing
-  |
   = help: a scale is any number but zero
 "#
 }
@@ -396,236 +391,6 @@ error[E0501]: `material` wants a material, found a colour
   |
 1 | draw sphere(r: 1).with(#fff)
   |                        ^^^^ a colour
-  |
   = help: write a material of this colour, such as `matte(#b8683c)`
-"#
-}
-
-says! {
-    an_unknown_kind_of_material_gets_the_nearest: "material a(kind: \"mate\")\n",
-    r#"
-error[E0507]: `kind` cannot be "mate"
- --> scene.pss:1:18
-  |
-1 | material a(kind: "mate")
-  |                  ^^^^^^ unknown word
-  |
-  = help: did you mean "matte"?
-"#
-}
-
-says! {
-    a_method_wants_a_shape: "draw [sphere(r: 1)].move([1, 0, 0])\n",
-    r#"
-error[E0501]: `.move` is a method of shapes, not of a list
- --> scene.pss:1:21
-  |
-1 | draw [sphere(r: 1)].move([1, 0, 0])
-  |      -------------- ^^^^ needs a shape
-  |      |
-  |      a list
-  |
-  = help: combine the list first: `union(list)`
-"#
-}
-
-says! {
-    a_default_lies_in_its_range: "param a: length = 9 in 1..8\n",
-    r#"
-error[E0503]: `a` is outside of what it allows
- --> scene.pss:1:19
-  |
-1 | param a: length = 9 in 1..8
-  |                   ^ 9  ---- allowed
-  |
-  = help: write a value from 1 to 8
-"#
-}
-
-says! {
-    what_is_not_there_yet_says_so: "fn f(x) = x * 2\nimport \"a.pss\" as b\nprint 3\nexpect 1 < 2\nlet a = for i in 0..3 { i }\nlet b = if true { 1 } else { 2 }\n@ghost draw sphere(r: 1)\nlet c = sphere(r: 1).mirror([1, 0, 0])\n",
-    r#"
-error[E0702]: `fn` is not supported yet
- --> scene.pss:1:1
-  |
-1 | fn f(x) = x * 2
-  | ^^ understood, but not carried out
-  |
-  = help: write the scene without it, or wait for a later version
-
-error[E0702]: `import` is not supported yet
- --> scene.pss:2:1
-  |
-2 | import "a.pss" as b
-  | ^^^^^^ understood, but not carried out
-  |
-  = help: write the scene without it, or wait for a later version
-
-error[E0702]: `print` is not supported yet
- --> scene.pss:3:1
-  |
-3 | print 3
-  | ^^^^^ understood, but not carried out
-  |
-  = help: write the scene without it, or wait for a later version
-
-error[E0702]: `expect` is not supported yet
- --> scene.pss:4:1
-  |
-4 | expect 1 < 2
-  | ^^^^^^ understood, but not carried out
-  |
-  = help: write the scene without it, or wait for a later version
-
-error[E0702]: `for` is not supported yet
- --> scene.pss:5:9
-  |
-5 | let a = for i in 0..3 { i }
-  |         ^^^^^^^^^^^^^^^^^^^ understood, but not carried out
-  |
-  = help: write the scene without it, or wait for a later version
-
-error[E0702]: `if` is not supported yet
- --> scene.pss:6:9
-  |
-6 | let b = if true { 1 } else { 2 }
-  |         ^^^^^^^^^^^^^^^^^^^^^^^^ understood, but not carried out
-  |
-  = help: write the scene without it, or wait for a later version
-
-error[E0702]: `@ghost` is not supported yet
- --> scene.pss:7:2
-  |
-7 | @ghost draw sphere(r: 1)
-  |  ^^^^^ understood, but not carried out
-  |
-  = help: write the scene without it, or wait for a later version
-
-error[E0702]: `mirror` is not supported yet
- --> scene.pss:8:22
-  |
-8 | let c = sphere(r: 1).mirror([1, 0, 0])
-  |                      ^^^^^^ understood, but not carried out
-  |
-  = help: write the scene without it, or wait for a later version
-"#
-}
-
-says! {
-    hiding_a_builtin_is_a_warning: "let sphere = 3\n",
-    r#"
-warning[W0201]: `sphere` hides what the language calls so
- --> scene.pss:1:5
-  |
-1 | let sphere = 3
-  |     ^^^^^^ defined here
-  |
-  = help: take another name
-"#
-}
-
-says! {
-    control_characters_are_escaped: "let a = \"x\x1b[31m\" + 1\n",
-    r#"
-error[E0203]: `+` cannot take a string and a number
- --> scene.pss:1:23
-  |
-1 | let a = "x\u{1b}[31m" + 1
-  |         ------------- ^ - a number
-  |         |             |
-  |         |             does not fit its operands
-  |         a string
-  |
-  = help: numbers or vectors are wanted
-"#
-}
-
-says! {
-    a_tab_and_wide_characters_keep_the_place: "let a =\t\"größe\" + 1\r\n",
-    r#"
-error[E0203]: `+` cannot take a string and a number
- --> scene.pss:1:17
-  |
-1 | let a =    "größe" + 1
-  |            ------- ^ - a number
-  |            |       |
-  |            |       does not fit its operands
-  |            a string
-  |
-  = help: numbers or vectors are wanted
-"#
-}
-
-says! {
-    an_unknown_define_lists_the_parameters: "param bore: length = 4 in 1..8\nparam name = \"a\"\n",
-    -D &[("bohr", "5")],
-    r#"
-error[E0409]: the scene has no parameter `bohr`
- --> command line:1:1
-  |
-1 | bohr=5
-  | ^^^^ unknown parameter
-  |
-  = help: the parameters are `bore`, `name`
-"#
-}
-
-says! {
-    a_define_out_of_range_is_refused: "param bore: length = 4 in 1..8\n",
-    -D &[("bore", "9")],
-    r#"
-error[E0503]: `bore` is outside of what it allows
- --> command line:1:6
-  |
-1 | bore=9
-  |      ^ 9
-  |
- ::: scene.pss:1:27
-  |
-1 | param bore: length = 4 in 1..8
-  |                           ---- allowed
-  |
-  = help: write a value from 1 to 8
-"#
-}
-
-says! {
-    a_define_of_a_wrong_type_is_refused: "param bore: length = 4 in 1..8\nparam turn = 30deg\n",
-    -D &[("bore", "x y"), ("turn", "40")],
-    r#"
-error[E0509]: `x y` cannot be read as a value
- --> command line:1:6
-  |
-1 | bore=x y
-  |      ^^^ expected a length
-  |
-  = help: write a length, such as `-D bore=2.5`
-
-error[E0502]: `turn` wants an angle, found a bare number
- --> command line:1:6
-  |
-1 | turn=40
-  |      ^^ which unit?
-  |
-  = help: write `40deg`
-"#
-}
-
-says! {
-    a_define_outside_of_a_list_gets_the_nearest: "param mode = \"fast\" in [\"fast\", \"fine\"]\n",
-    -D &[("mode", "fin")],
-    r#"
-error[E0503]: `mode` is outside of what it allows
- --> command line:1:6
-  |
-1 | mode=fin
-  |      ^^^ not in the list
-  |
- ::: scene.pss:1:24
-  |
-1 | param mode = "fast" in ["fast", "fine"]
-  |                        ---------------- allowed
-  |
-  = help: did you mean "fine"?
 "#
 }

@@ -27,7 +27,6 @@ error[E0201]: `-` and `|` stand together without parentheses
   |        -   ^ which comes first?
   |        |
   |        the first operator
-  |
   = help: write `(a - b) | c` or `a - (b | c)`
 "#
 }
@@ -42,7 +41,6 @@ error[E0201]: `|` and `&` stand together without parentheses
   |           -   ^ which comes first?
   |           |
   |           the first operator
-  |
   = help: write `(1 | 2) & 3 & 4`, or put the parentheses where they are meant
 "#
 }
@@ -58,7 +56,6 @@ error[E0202]: `+` does not combine a shape and a shape
   |      |            |
   |      |            an operator of numbers
   |      a shape
-  |
   = help: the union of two shapes is `a | b`
 "#
 }
@@ -74,7 +71,6 @@ error[E0202]: `*` does not combine a shape and a shape
   |      |            |
   |      |            an operator of numbers
   |      a shape
-  |
   = help: the intersection of two solids is `a & b`
 "#
 }
@@ -89,7 +85,6 @@ error[E0203]: `|` combines shapes, not a number
   |                   - ^ a number
   |                   |
   |                   wants shapes on both sides
-  |
   = help: write a shape, such as `sphere(r: 10)`
 "#
 }
@@ -104,7 +99,6 @@ error[E0203]: `-` combines shapes, not a list
   |                   - ^^^^^^^^^^^^^^ a list
   |                   |
   |                   wants shapes on both sides
-  |
   = help: combine a list: `union(list)`
 "#
 }
@@ -117,7 +111,6 @@ error[E0303]: the intersection of an empty list is all of space
   |
 1 | draw intersection([])
   |                   ^^ no shapes
-  |
   = help: give it at least one shape
 "#
 }
@@ -130,7 +123,6 @@ error[E0401]: `wegde` is not known
   |
 2 | draw wegde
   |      ^^^^^ unknown name
-  |
   = help: define it: `let wegde = ...`
 "#
 }
@@ -143,7 +135,6 @@ error[E0401]: `shpere` is not known
   |
 1 | draw shpere(r: 1)
   |      ^^^^^^ unknown name
-  |
   = help: did you mean `sphere`?
 "#
 }
@@ -156,7 +147,6 @@ error[E0403]: `cylinder` has no argument `raduis`
   |
 1 | draw cylinder(raduis: 1, h: 3)
   |               ^^^^^^ unknown argument
-  |
   = help: it is `cylinder(r:, h:, from:, to:)`
 "#
 }
@@ -169,7 +159,6 @@ error[E0403]: `sphere` has no argument `radius`
   |
 1 | draw sphere(radius: 1)
   |             ^^^^^^ unknown argument
-  |
   = help: it is `sphere(r:, at:)`
 "#
 }
@@ -182,7 +171,6 @@ error[E0408]: a shape has no method `mvoe`
   |
 1 | draw sphere(r: 1).mvoe([1, 0, 0])
   |                   ^^^^ unknown method
-  |
   = help: the methods are `.move` `.rotate_x` `.rotate_y` `.rotate_z` `.rotate` `.scale` `.fit` `.with` `.close`
 "#
 }
@@ -195,7 +183,6 @@ error[E0404]: `sphere` needs `r`
   |
 1 | draw sphere(at: [0, 0, 0])
   |      ^^^^^^^^^^^^^^^^^^^^^ `r` is missing
-  |
   = help: it is `sphere(r:, at:)`
 "#
 }
@@ -208,7 +195,6 @@ error[E0405]: `a` is given twice
   |
 1 | draw box([0, 0, 0], [1, 1, 1], a: [2, 2, 2])
   |          --------- the first time ^^^^^^^^^ the second time
-  |
   = help: remove one of them
 "#
 }
@@ -221,7 +207,6 @@ error[E0406]: the arguments of `sphere` are given by name
   |
 1 | draw sphere(3)
   |             ^ which one is this?
-  |
   = help: it is `sphere(r:, at:)`
 "#
 }
@@ -234,7 +219,6 @@ error[E0406]: `union` takes one argument by place
   |
 1 | draw union(sphere(r: 1), sphere(r: 2))
   |                          ^^^^^^^^^^^^ which one is this?
-  |
   = help: put the operands in a list: `union([a, b])`
 "#
 }
@@ -249,7 +233,6 @@ error[E0402]: `a` is defined twice
   |     - the first time
 2 | param a = 2
   |       ^ the second time
-  |
   = help: take another name for one of them
 "#
 }
@@ -266,7 +249,6 @@ error[E0407]: `a` is defined by itself
   |     - needs `c`
 3 | let c = a
   |     - needs `a`
-  |
   = help: break the circle: one of these must not use the next
 "#
 }
@@ -281,7 +263,6 @@ error[E0402]: `render` is given twice
   | ------------------ the first time
 2 | render(samples: 5)
   | ^^^^^^^^^^^^^^^^^^ the second time
-  |
   = help: a scene has one: remove the other
 "#
 }
@@ -296,7 +277,6 @@ error[E0402]: `units` is given twice
   | --------- the first time
 2 | units(cm)
   | ^^^^^^^^^ the second time
-  |
   = help: a scene has one: remove the other
 "#
 }

@@ -27,7 +27,6 @@ error[E0101]: expected `,` or `)`, found `at`
   |            -      ^^ does not fit here
   |            |
   |            inside this `(`
-  |
   = help: put a comma before `at`
 "#
 }
@@ -42,7 +41,6 @@ error[E0102]: `(` is not closed
   |            ^ opened here
 2 | let a = sphere(r: )
   | --- expected `)` before this
-  |
   = help: add the missing `)`
 
 error[E0101]: expected a value after `:`, found `)`
@@ -50,7 +48,6 @@ error[E0101]: expected a value after `:`, found `)`
   |
 2 | let a = sphere(r: )
   |                   ^ not a value
-  |
   = help: a value is a number, a colour, a string, a list, a name or a call
 "#
 }
@@ -65,7 +62,6 @@ error[E0102]: `)` does not close `[`
   |          -       ^ expected `]`
   |          |
   |          opened here
-  |
   = help: put `]` before `)`
 "#
 }
@@ -78,7 +74,6 @@ error[E0102]: `(` is not closed
   |
 1 | draw box([0, 0, 0], [1, 1, 1]
   |         ^ opened here
-  |
   = help: add the missing `)`
 "#
 }
@@ -91,7 +86,6 @@ error[E0106]: `lett` begins no item
   |
 2 | lett a = 3
   | ^^^^ not a keyword
-  |
   = help: did you mean `let`?
 "#
 }
@@ -104,7 +98,6 @@ error[E0106]: `drow` begins no item
   |
 1 | drow sphere(r: 1)
   | ^^^^ not a keyword
-  |
   = help: did you mean `draw`?
 "#
 }
@@ -117,7 +110,6 @@ error[E0101]: expected a name after `let`, found `in`
   |
 1 | let in = 3
   |     ^^ not a name
-  |
   = help: `in` is a keyword: take another name
 "#
 }
@@ -130,7 +122,6 @@ error[E0101]: the item ends after `+`
   |
 1 | let a = 2 +
   |            ^ expected a value after `+`
-  |
   = help: write the missing value, or remove the sign
 "#
 }
@@ -143,7 +134,6 @@ error[E0101]: expected `=` after the name, found `3`
   |
 1 | let a 3
   |       ^ expected `=`
-  |
   = help: write `let name = value`
 "#
 }
@@ -156,7 +146,6 @@ error[E0101]: `=` has no place in arguments
   |
 1 | draw sphere(r = 3)
   |               ^ expected `:`
-  |
   = help: an argument is named with a colon: `r: value`
 "#
 }
@@ -169,7 +158,6 @@ error[E0101]: `(` stands on a line of its own
   |
 2 | (r: 3)
   | ^ what does it belong to?
-  |
   = help: the `(` of a call or an index stands on the line of what it follows
 "#
 }
@@ -182,7 +170,6 @@ error[E0101]: a number begins with its point
   |
 1 | let a = .5
   |         ^ digits are missing
-  |
   = help: write `0.5`
 "#
 }
@@ -195,7 +182,6 @@ error[E0101]: a number ends with its point
   |
 1 | let a = 5.
   |          ^ digits are missing
-  |
   = help: write `5.0`
 "#
 }
@@ -208,7 +194,6 @@ error[E0105]: `pi` is not a unit
   |
 1 | let a = 2pi
   |          ^^ not a unit
-  |
   = help: write `2 * pi`
 "#
 }
@@ -221,7 +206,6 @@ error[E0105]: `dge` is not a unit
   |
 1 | let a = 2dge
   |          ^^^ not a unit
-  |
   = help: the units are `um` `mm` `cm` `m` `km` `in` `ft` `deg` `rad` `turn`; for a product write `2 * dge`
 "#
 }
@@ -234,7 +218,6 @@ error[E0105]: `#ffff` is not a colour
   |
 1 | let a = #ffff
   |         ^^^^^ expected 3 or 6 hexadecimal digits
-  |
   = help: write `#rgb` or `#rrggbb`, such as `#b8683c`
 "#
 }
@@ -247,7 +230,6 @@ error[E0104]: the string does not end
   |
 1 | let a = "abc
   |         ^^^^ no closing `"` on this line
-  |
   = help: strings end on their line; a line break inside is written `\n`
 "#
 }
@@ -260,7 +242,6 @@ error[E0104]: `\q` is no escape
   |
 1 | let a = "a\qb"
   |           ^^ unknown escape
-  |
   = help: the escapes are `\"` `\\` `\n` `\t`; a backslash is written `\\`
 "#
 }
@@ -273,7 +254,6 @@ error[E0108]: the comment does not end
   |
 1 | let a = 1 /* no end
   |           ^^ opened here
-  |
   = help: add the missing `*/`
 "#
 }
@@ -286,7 +266,6 @@ error[E0103]: `ö` has no meaning here
   |
 1 | let größe = 3
   |       ^ unexpected character
-  |
   = help: names are made of ASCII letters, digits and `_`
 "#
 }
@@ -299,7 +278,6 @@ error[E0103]: `;` has no meaning here
   |
 1 | let a = 3;
   |          ^ unexpected character
-  |
   = help: items and expressions need nothing between them: remove it
 "#
 }
@@ -312,7 +290,6 @@ error[E0103]: the text holds a NUL character
   |
 1 | let a = "\u{0}"
   |          ^^^^^ not text
-  |
   = help: is this a scene file?
 "#
 }
@@ -327,7 +304,6 @@ error[E0107]: comparisons do not chain
   |           -   ^ a second one
   |           |
   |           the first
-  |
   = help: compare twice: `a < b and b < c`; a half-space has one side: `z < 60`
 "#
 }
@@ -340,7 +316,6 @@ error[E0101]: `&&` is no operator
   |
 1 | let a = true && false
   |               ^ one sign too many
-  |
   = help: solids take `&`, conditions `and`
 "#
 }

@@ -101,11 +101,11 @@ pub fn catalog() -> Catalog {
     Catalog { decls: DECLS.to_vec() }
 }
 
+/// A scene with its warnings, or errors.
+pub type Outcome = Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>>;
+
 /// Reads a scene that is called `scene.pss` in the folder `/scenes`.
-pub fn read_with(
-    text: &str,
-    defines: &[(&str, &str)],
-) -> (Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>>, SourceMap) {
+pub fn read_with(text: &str, defines: &[(&str, &str)]) -> (Outcome, SourceMap) {
     let mut sources = SourceMap::default();
     let file = sources.add("scene.pss", Some("/scenes/scene.pss".into()), text);
     let defines: Vec<(String, String)> =
