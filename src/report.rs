@@ -4,10 +4,10 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
-use serde_json::json;
+use serde::Serialize;
 
 use crate::diag::{Diagnostic, Label, Severity};
-use crate::source::{FileId, LineColumn, SourceMap};
+use crate::source::{FileId, SourceMap};
 
 /// Errors shown before the rest is only counted.
 const MAX_ERRORS: usize = 20;
@@ -64,7 +64,25 @@ fn one(diagnostic: &Diagnostic, sources: &SourceMap, renderer: &Renderer) -> Str
     for note in &diagnostic.notes {
         group = group.element(Level::NOTE.message(clean(note)));
     }
-    renderer.render(&[group])
+    without_gap(&renderer.render(&[group]))
+}
+
+/// The same without the empty line of the margin that the renderer puts before help and notes.
+fn without_gap(rendered: &str) -> String {
+    let lines: Vec<&str> = rendered.lines().collect();
+    let plain: Vec<String> = lines.iter().map(|l| uncolored(l)).collect();
+    let is_gap = |i: usize| {
+        plain[i].trim() == "|" && plain.get(i + 1).is_some_and(|next| next.trim_start().starts_with("= "))
+    };
+    let kept = (0..lines.len()).filter(|i| !is_gap(*i)).map(|i| lines[i]);
+    kept.collect::<Vec<_>>().join("\n")
+}
+
+/// A line without its colours.
+fn uncolored(line: &str) -> String {
+    let mut parts = line.split('\u{1b}');
+    let first = parts.next().unwrap_or("").to_owned();
+    parts.fold(first, |plain, part| plain + part.split_once('m').map_or("", |(_, rest)| rest))
 }
 
 fn annotation<'a>(label: &'a Label, main: bool, text: &Visible) -> Annotation<'a> {
@@ -117,6 +135,7 @@ impl Visible {
         let start = source[..low].rfind('\n').map_or(0, |i| i + 1);
         let start = if start == 0 && source.starts_with('\u{feff}') { 3.min(low) } else { start };
         let end = source[high..].find('\n').map_or(source.len(), |i| high + i);
+        let end = if end > high && source[..end].ends_with('\r') { end - 1 } else { end };
         let mut out = Visible {
             text: String::with_capacity(end - start),
             first_line: source[..start].matches('\n').count() + 1,
@@ -159,20 +178,32 @@ pub fn json_line(diagnostic: &Diagnostic, sources: &SourceMap) -> String {
     let place = diagnostic.labels.first().map(|l| l.span);
     let start = place.map(|s| sources.locate(s.file, s.start));
     let end = place.map(|s| sources.locate(s.file, s.end.max(s.start)));
-    let line = |l: Option<LineColumn>| l.map(|l| l.line);
-    let column = |l: Option<LineColumn>| l.map(|l| l.column);
-    let severity = if diagnostic.is_error() { "error" } else { "warning" };
-    json!({
-        "severity": severity,
-        "code": diagnostic.code,
-        "message": diagnostic.message,
-        "file": place.map(|s| sources.file(s.file).name.as_str()),
-        "line": line(start),
-        "column": column(start),
-        "end_line": line(end),
-        "end_column": column(end),
-        "help": diagnostic.help,
-        "notes": diagnostic.notes,
-    })
-    .to_string()
+    let line = Line {
+        severity: if diagnostic.is_error() { "error" } else { "warning" },
+        code: diagnostic.code,
+        message: &diagnostic.message,
+        file: place.map(|s| sources.file(s.file).name.as_str()),
+        line: start.map(|l| l.line),
+        column: start.map(|l| l.column),
+        end_line: end.map(|l| l.line),
+        end_column: end.map(|l| l.column),
+        help: diagnostic.help.as_deref(),
+        notes: &diagnostic.notes,
+    };
+    serde_json::to_string(&line).unwrap_or_default()
+}
+
+/// The fields of a line, in their order.
+#[derive(Serialize)]
+struct Line<'a> {
+    severity: &'static str,
+    code: &'static str,
+    message: &'a str,
+    file: Option<&'a str>,
+    line: Option<usize>,
+    column: Option<usize>,
+    end_line: Option<usize>,
+    end_column: Option<usize>,
+    help: Option<&'a str>,
+    notes: &'a [String],
 }

@@ -5,7 +5,7 @@ use super::ast::{Args, Expr};
 use super::value::{Eval, Located};
 use crate::diag::{Diagnostic, nearest};
 use crate::scene::{Decl, Kind};
-use crate::source::Span;
+use crate::source::{SourceMap, Span};
 
 /// An argument that may be given.
 #[derive(Clone, Copy, Debug)]
@@ -125,8 +125,8 @@ pub struct Bound<'a> {
     pub receiver: Option<Located>,
     /// One for each formal argument.
     pub values: Vec<Option<Located>>,
-    /// How each was written.
-    pub written: Vec<String>,
+    /// The texts, for hints.
+    pub sources: &'a SourceMap,
 }
 
 impl Bound<'_> {
@@ -146,8 +146,8 @@ impl Bound<'_> {
 
     /// An angle, degrees.
     pub fn angle(&self, name: &str) -> Eval<f64> {
-        let written = self.index(name).and_then(|i| self.written.get(i)).map_or("", String::as_str);
-        self.need(name)?.angle(name, written)
+        let given = self.need(name)?;
+        given.angle(name, self.sources.text(given.at))
     }
 
     /// What a method is called on.

@@ -96,7 +96,7 @@ fn sizes(machine: &mut Machine, given: &Located, name: &str) -> Eval<Vec<f64>> {
         return given.vector(name, 3);
     };
     given.vector(name, 3)?;
-    list.items.iter().map(|i| size(machine, &Located { at: given.at, ..i.clone() }, name)).collect()
+    list.items.iter().map(|i| size(machine, i, name)).collect()
 }
 
 fn positive(given: &Located, name: &str) -> Eval<f64> {

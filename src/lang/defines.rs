@@ -111,7 +111,7 @@ fn given(machine: &mut Machine, define: &Define, kind: &str) -> Eval<Located> {
     }
     let refuse = || {
         Diagnostic::error("E0509", format!("`{}` cannot be read as a value", define.value.escape_debug()))
-            .at(at, format!("expected {}", example(kind)))
+            .at(at, format!("expected {}", article(kind)))
             .help(format!("write {}, such as `-D {}={}`", article(kind), define.name, example(kind)))
     };
     let text = &machine.sources.file(define.file).text;

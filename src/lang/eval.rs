@@ -201,11 +201,9 @@ impl Machine<'_> {
     fn builtin(&mut self, builtin: &Builtin, receiver: Option<Located>, args: &Args, at: Span) -> Eval<Val> {
         let callee = Callee { word: builtin.name, at, formals: builtin.formals };
         let exprs = callee.bind(args, "")?;
-        let written =
-            exprs.iter().map(|e| e.map_or(String::new(), |e| self.written(e.at).to_owned())).collect();
         let values =
             exprs.iter().map(|e| e.map(|e| self.located(e)).transpose()).collect::<Eval<Vec<_>>>()?;
-        let value = (builtin.call)(&Bound { callee, receiver, values, written })?;
+        let value = (builtin.call)(&Bound { callee, receiver, values, sources: self.sources })?;
         arithmetic::finite(&value, builtin.name, at)?;
         Ok(value)
     }

@@ -4,8 +4,10 @@ use glam::DVec3;
 
 use super::ast::{Expr, ExprKind, InfixOp, PrefixOp};
 use super::eval::Machine;
+use super::order;
 use super::value::{Eval, bounded};
 use crate::diag::Diagnostic;
+use crate::source::Span;
 
 /// `normal . p + constant`.
 #[derive(Clone, Copy)]
@@ -58,6 +60,12 @@ fn refuse(expr: &Expr, what: &str, label: &str) -> Diagnostic {
         .help("write a linear condition on x, y and z: `z < 60` or `x + 2*y <= 3`")
 }
 
+fn bent(at: Span) -> Diagnostic {
+    Diagnostic::error("E0508", "the condition is not linear")
+        .at(at, "x, y and z may be added, and multiplied by numbers")
+        .help("a half-space has a flat face: `x + 2*y <= 3`")
+}
+
 fn linear(machine: &mut Machine, expr: &Expr) -> Eval<Linear> {
     let axis = |normal| Ok(Linear { normal, constant: 0.0 });
     match &expr.kind {
@@ -73,15 +81,11 @@ fn linear(machine: &mut Machine, expr: &Expr) -> Eval<Linear> {
             let mut sum = linear(machine, first)?;
             for (op, sign, operand) in rest {
                 let next = linear(machine, operand)?;
-                sum = combine(*op, sum, next).ok_or_else(|| {
-                    let told = Diagnostic::error("E0508", "the condition is not linear");
-                    told.at(*sign, "x, y and z may be added and multiplied by numbers")
-                        .at(expr.at, "in this")
-                        .help("a half-space has a flat face: `x + 2*y <= 3`")
-                })?;
+                sum = combine(*op, sum, next).ok_or_else(|| bent(*sign))?;
             }
             Ok(sum)
         }
+        _ if order::uses(expr, &["x", "y", "z"]) => Err(bent(expr.at).into()),
         _ => {
             let constant = machine.located(expr)?.number("the condition")?;
             Ok(Linear { normal: DVec3::ZERO, constant })

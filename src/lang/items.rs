@@ -9,7 +9,7 @@ use super::eval::{Machine, later};
 use super::value::{Eval, Located, Stop, Val};
 use super::{builtins, check, order, parse, sets, span, split, units};
 use crate::diag::{Diagnostic, nearest};
-use crate::scene::{Call, Catalog, Draw, Group, Named, Scene};
+use crate::scene::{Call, Catalog, Draw, Group, Kind, Named, Scene};
 use crate::source::{FileId, SourceMap, Span};
 
 /// The largest file that is read.
@@ -41,8 +41,15 @@ pub fn read(sources: &SourceMap, file: FileId, catalog: &Catalog, defines: &[Def
         materials: Vec::new(),
         warnings: Vec::new(),
     };
-    let mut reader =
-        Reader { machine, defines, scene: Scene::default(), only: Vec::new(), errors, render: None };
+    let mut reader = Reader {
+        machine,
+        defines,
+        scene: Scene::default(),
+        only: Vec::new(),
+        errors,
+        render: None,
+        quiet: None,
+    };
     reader.read(&items);
     reader.finish()
 }
@@ -128,28 +135,40 @@ struct Reader<'a> {
     errors: Vec<Diagnostic>,
     /// The place of the `render` item.
     render: Option<Span>,
+    /// The last item that failed because of another.
+    quiet: Option<Span>,
 }
 
 impl Reader<'_> {
     fn read(&mut self, items: &[Item]) {
-        let (sorted, cycles) = order::sorted(items);
+        let catalog = self.machine.catalog;
+        let takes_condition = |word: &str| {
+            let decl = catalog.find(Group::Primitive, word);
+            decl.is_some_and(|d| d.params.iter().any(|p| p.kind == Kind::HalfSpace))
+        };
+        let (sorted, cycles) = order::sorted(items, &takes_condition);
         self.errors.extend(cycles);
         for i in sorted {
             let value = self.definition(&items[i]);
-            if let (Some(value), Some(name)) = (self.told(value), order::defined(&items[i])) {
+            if let (Some(value), Some(name)) = (self.told(value, items[i].at), order::defined(&items[i])) {
                 self.hides_builtin(name);
                 self.machine.names.insert(name.text.clone(), Some(value));
             }
         }
         for item in items {
             let done = self.item(item);
-            self.told(done);
+            self.told(done, item.at);
         }
     }
 
     fn finish(self) -> Outcome {
-        let Reader { machine, mut scene, only, errors, .. } = self;
+        let Reader { machine, mut scene, only, errors, quiet, .. } = self;
         let mut all = errors;
+        if let (true, Some(at)) = (all.is_empty(), quiet) {
+            let error =
+                Diagnostic::error("E0407", "a name is used before it is known").at(at, "in this item");
+            all.push(error.help("define what it uses above it"));
+        }
         let failed = !all.is_empty();
         all.extend(machine.warnings);
         let all = in_order(all);
@@ -163,11 +182,11 @@ impl Reader<'_> {
         Ok((scene, all))
     }
 
-    fn told<T>(&mut self, outcome: Eval<T>) -> Option<T> {
+    fn told<T>(&mut self, outcome: Eval<T>, at: Span) -> Option<T> {
         match outcome {
             Ok(value) => return Some(value),
             Err(Stop::Told(error)) => self.errors.push(*error),
-            Err(Stop::Quiet) => {}
+            Err(Stop::Quiet) => self.quiet = Some(at),
         }
         None
     }

@@ -34,7 +34,9 @@ pub fn redefinitions<'a>(names: impl IntoIterator<Item = &'a Word>) -> Vec<Diagn
 }
 
 /// Indices of the items that define names, each after those it needs; and the cycles, as errors.
-pub fn sorted(items: &[Item]) -> (Vec<usize>, Vec<Diagnostic>) {
+/// `takes_condition` tells which calls take a condition on the coordinates: there x, y and z are not names of
+/// the file.
+pub fn sorted(items: &[Item], takes_condition: &dyn Fn(&str) -> bool) -> (Vec<usize>, Vec<Diagnostic>) {
     let index: HashMap<&str, usize> = items
         .iter()
         .enumerate()
@@ -43,7 +45,7 @@ pub fn sorted(items: &[Item]) -> (Vec<usize>, Vec<Diagnostic>) {
         .collect();
     let needs: Vec<Vec<usize>> = items
         .iter()
-        .map(|item| needed(item).into_iter().filter_map(|n| index.get(n).copied()).collect())
+        .map(|item| needed(item, takes_condition).into_iter().filter_map(|n| index.get(n).copied()).collect())
         .collect();
     let mut walk =
         Walk { items, needs, state: vec![State::New; items.len()], order: Vec::new(), errors: Vec::new() };
@@ -113,62 +115,73 @@ impl Walk<'_> {
     }
 }
 
+/// Whether an expression uses one of some names.
+pub fn uses(expr: &Expr, names: &[&str]) -> bool {
+    let mut used = Uses { names: Vec::new(), takes_condition: &|_| false };
+    used.expr(expr);
+    used.names.iter().any(|n| names.contains(n))
+}
+
 /// The names that an item uses.
-fn needed(item: &Item) -> Vec<&str> {
-    let mut names = Vec::new();
+fn needed<'a>(item: &'a Item, takes_condition: &dyn Fn(&str) -> bool) -> Vec<&'a str> {
+    let mut uses = Uses { names: Vec::new(), takes_condition };
     match &item.kind {
-        ItemKind::Let(_, value) => in_expr(value, &mut names),
-        ItemKind::Material(_, args) => in_args(args, &mut names),
+        ItemKind::Let(_, value) => uses.expr(value),
+        ItemKind::Material(_, args) => uses.args(args, false),
         ItemKind::Param(param) => {
-            in_expr(&param.default, &mut names);
+            uses.expr(&param.default);
             if let Some(allowed) = &param.allowed {
-                in_expr(allowed, &mut names);
+                uses.expr(allowed);
             }
         }
         _ => {}
     }
-    names
+    uses.names
 }
 
-fn in_args<'a>(args: &'a Args, names: &mut Vec<&'a str>) {
-    for arg in &args.list {
-        let mut value = &arg.value;
-        while let ExprKind::Paren(inside) = &value.kind {
-            value = inside;
-        }
-        let compares = matches!(&value.kind, ExprKind::Infix(_, rest) if rest[0].0.compares());
-        let known = names.len();
-        in_expr(value, names);
-        if compares {
-            // A condition on the coordinates: there x, y and z are not names of the file.
-            let mut i = 0;
-            names.retain(|n| {
-                i += 1;
-                i <= known || !["x", "y", "z"].contains(n)
-            });
+struct Uses<'a, 'f> {
+    names: Vec<&'a str>,
+    takes_condition: &'f dyn Fn(&str) -> bool,
+}
+
+impl<'a> Uses<'a, '_> {
+    fn args(&mut self, args: &'a Args, of_coordinates: bool) {
+        for arg in &args.list {
+            let mut value = &arg.value;
+            while let ExprKind::Paren(inside) = &value.kind {
+                value = inside;
+            }
+            let compares = matches!(&value.kind, ExprKind::Infix(_, rest) if rest[0].0.compares());
+            let known = self.names.len();
+            self.expr(value);
+            if compares && of_coordinates {
+                let added = self.names.split_off(known);
+                self.names.extend(added.into_iter().filter(|n| !["x", "y", "z"].contains(n)));
+            }
         }
     }
-}
 
-fn in_expr<'a>(expr: &'a Expr, names: &mut Vec<&'a str>) {
-    match &expr.kind {
-        ExprKind::Name(name) => names.push(name),
-        ExprKind::List(items) => items.iter().for_each(|i| in_expr(i, names)),
-        ExprKind::Paren(inside) | ExprKind::Prefix(_, _, inside) => in_expr(inside, names),
-        ExprKind::Infix(first, rest) => {
-            in_expr(first, names);
-            rest.iter().for_each(|(_, _, e)| in_expr(e, names));
-        }
-        ExprKind::Steps(base, steps) => {
-            in_expr(base, names);
-            for step in steps {
-                match step {
-                    Step::Call(args) | Step::Method(_, args) => in_args(args, names),
-                    Step::Index(index, _) => in_expr(index, names),
-                    Step::Member(_) => {}
+    fn expr(&mut self, expr: &'a Expr) {
+        match &expr.kind {
+            ExprKind::Name(name) => self.names.push(name),
+            ExprKind::List(items) => items.iter().for_each(|i| self.expr(i)),
+            ExprKind::Paren(inside) | ExprKind::Prefix(_, _, inside) => self.expr(inside),
+            ExprKind::Infix(first, rest) => {
+                self.expr(first);
+                rest.iter().for_each(|(_, _, e)| self.expr(e));
+            }
+            ExprKind::Steps(base, steps) => {
+                self.expr(base);
+                let called = matches!(&base.kind, ExprKind::Name(word) if (self.takes_condition)(word));
+                for (i, step) in steps.iter().enumerate() {
+                    match step {
+                        Step::Call(args) | Step::Method(_, args) => self.args(args, called && i == 0),
+                        Step::Index(index, _) => self.expr(index),
+                        Step::Member(_) => {}
+                    }
                 }
             }
+            _ => {}
         }
-        _ => {}
     }
 }

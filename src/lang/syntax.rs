@@ -34,8 +34,7 @@ impl Refused<'_> {
         let Some(found) = all.get(i) else {
             return self.ended(&all);
         };
-        let scene =
-            Slip { refused: self, all: &all, i, found, before, bracket: innermost(self.text, &all[..i]) };
+        let scene = Slip { refused: self, all: &all, i, found, before, bracket: innermost(&all[..i]) };
         scene.explain()
     }
 
@@ -54,6 +53,14 @@ impl Refused<'_> {
         let item = all.first().map_or("", |t| t.text(self.text));
         if let Some(error) = header(item, all, all.len(), self, at) {
             return error;
+        }
+        if let [.., number, point] = all
+            && number.kind == TokenKind::Number
+            && word == "."
+        {
+            return Diagnostic::error("E0101", "a number ends with its point")
+                .at(self.place(point), "digits are missing")
+                .help(format!("write `{}.0`", number.text(self.text)));
         }
         let error = Diagnostic::error("E0101", format!("the item ends after `{word}`"));
         if last.ends_operand(self.text) {
@@ -87,7 +94,7 @@ fn usage(item: &str) -> &'static str {
 }
 
 /// The innermost bracket left open.
-fn innermost<'a>(text: &str, before: &'a [Token]) -> Option<(&'a Token, usize)> {
+fn innermost(before: &[Token]) -> Option<(&Token, usize)> {
     let mut open = Vec::new();
     for (i, token) in before.iter().enumerate() {
         match token.kind {
@@ -96,7 +103,6 @@ fn innermost<'a>(text: &str, before: &'a [Token]) -> Option<(&'a Token, usize)> 
             _ => {}
         }
     }
-    let _ = text;
     open.pop()
 }
 

@@ -9,106 +9,103 @@ const fn decl(word: &'static str, group: Group, params: &'static [Param]) -> Dec
     Decl { word, group, doc: "", params, example: "" }
 }
 
+const DECLS: &[Decl] = &[
+    decl(
+        "sphere",
+        Group::Primitive,
+        &[Param::required("r", Kind::SizeOrVector, "radius"), Param::named("at", Kind::Vector(3), "centre")],
+    ),
+    decl(
+        "box",
+        Group::Primitive,
+        &[
+            Param::placed("a", Kind::Vector(3), "corner"),
+            Param::placed("b", Kind::Vector(3), "corner"),
+            Param::named("size", Kind::SizeOrVector, "edges"),
+            Param::named("at", Kind::Vector(3), "centre"),
+        ],
+    ),
+    decl(
+        "cylinder",
+        Group::Primitive,
+        &[
+            Param::required("r", Kind::Size, "radius"),
+            Param::named("h", Kind::Size, "height"),
+            Param::named("from", Kind::Vector(3), "end"),
+            Param::named("to", Kind::Vector(3), "end"),
+        ],
+    ),
+    decl(
+        "half_space",
+        Group::Primitive,
+        &[
+            Param::placed("inside", Kind::HalfSpace, "condition"),
+            Param::named("normal", Kind::Vector(3), "out"),
+            Param::named("at", Kind::Vector(3), "point"),
+        ],
+    ),
+    decl("plane", Group::Primitive, &[Param::required("z", Kind::Length, "height")]),
+    decl(
+        "points",
+        Group::Primitive,
+        &[
+            Param { required: true, ..Param::placed("source", Kind::PathOrSolid, "file or solid") },
+            Param::named("degree", Kind::Int(0, 4), "degree"),
+            Param::named("kernel", Kind::Choice(&["gaussian", "compact"]), "weight"),
+            Param::named("smoothing", Kind::Positive, "factor"),
+        ],
+    ),
+    decl(
+        "camera",
+        Group::Camera,
+        &[
+            Param::named("eye", Kind::Vector(3), "eye"),
+            Param::named("look_at", Kind::Vector(3), "target"),
+            Param::named("fov", Kind::Angle, "vertical angle"),
+        ],
+    ),
+    decl(
+        "light",
+        Group::Light,
+        &[
+            Param::named("direction", Kind::Vector(3), "travels"),
+            Param::named("color", Kind::Color, "colour"),
+            Param::named("intensity", Kind::Number, "factor"),
+            Param::named("softness", Kind::Angle, "angle"),
+            Param::named("falloff", Kind::Bool, "with distance"),
+        ],
+    ),
+    decl(
+        "render",
+        Group::Render,
+        &[
+            Param::named("size", Kind::Vector(2), "pixels"),
+            Param::named("samples", Kind::Int(1, 1_000_000), "a pixel"),
+            Param::named("integrator", Kind::Choice(&["direct", "path", "ao"]), "light"),
+            Param::named("aov", Kind::Choices(&["depth", "normal"]), "layers"),
+        ],
+    ),
+    decl(
+        "matte",
+        Group::Material,
+        &[
+            Param::placed("color", Kind::Color, "colour"),
+            Param::named("roughness", Kind::Number, "roughness"),
+        ],
+    ),
+    decl("metal", Group::Material, &[Param::placed("color", Kind::Color, "colour")]),
+];
+
 /// Enough to write scenes.
 pub fn catalog() -> Catalog {
-    Catalog {
-        decls: vec![
-            decl(
-                "sphere",
-                Group::Primitive,
-                &[
-                    Param::required("r", Kind::SizeOrVector, "radius"),
-                    Param::named("at", Kind::Vector(3), "centre"),
-                ],
-            ),
-            decl(
-                "box",
-                Group::Primitive,
-                &[
-                    Param::placed("a", Kind::Vector(3), "corner"),
-                    Param::placed("b", Kind::Vector(3), "corner"),
-                    Param::named("size", Kind::SizeOrVector, "edges"),
-                    Param::named("at", Kind::Vector(3), "centre"),
-                ],
-            ),
-            decl(
-                "cylinder",
-                Group::Primitive,
-                &[
-                    Param::required("r", Kind::Size, "radius"),
-                    Param::named("h", Kind::Size, "height"),
-                    Param::named("from", Kind::Vector(3), "end"),
-                    Param::named("to", Kind::Vector(3), "end"),
-                ],
-            ),
-            decl(
-                "half_space",
-                Group::Primitive,
-                &[
-                    Param::placed("inside", Kind::HalfSpace, "condition"),
-                    Param::named("normal", Kind::Vector(3), "out"),
-                    Param::named("at", Kind::Vector(3), "point"),
-                ],
-            ),
-            decl("plane", Group::Primitive, &[Param::required("z", Kind::Length, "height")]),
-            decl(
-                "points",
-                Group::Primitive,
-                &[
-                    Param { required: true, ..Param::placed("source", Kind::PathOrSolid, "file or solid") },
-                    Param::named("degree", Kind::Int(0, 4), "degree"),
-                    Param::named("kernel", Kind::Choice(&["gaussian", "compact"]), "weight"),
-                    Param::named("smoothing", Kind::Positive, "factor"),
-                ],
-            ),
-            decl(
-                "camera",
-                Group::Camera,
-                &[
-                    Param::named("eye", Kind::Vector(3), "eye"),
-                    Param::named("look_at", Kind::Vector(3), "target"),
-                    Param::named("fov", Kind::Angle, "vertical angle"),
-                ],
-            ),
-            decl(
-                "light",
-                Group::Light,
-                &[
-                    Param::named("direction", Kind::Vector(3), "travels"),
-                    Param::named("color", Kind::Color, "colour"),
-                    Param::named("intensity", Kind::Number, "factor"),
-                    Param::named("softness", Kind::Angle, "angle"),
-                    Param::named("falloff", Kind::Bool, "with distance"),
-                ],
-            ),
-            decl(
-                "render",
-                Group::Render,
-                &[
-                    Param::named("size", Kind::Vector(2), "pixels"),
-                    Param::named("samples", Kind::Int(1, 1_000_000), "a pixel"),
-                    Param::named("integrator", Kind::Choice(&["direct", "path", "ao"]), "light"),
-                    Param::named("aov", Kind::Choices(&["depth", "normal"]), "layers"),
-                ],
-            ),
-            decl(
-                "matte",
-                Group::Material,
-                &[
-                    Param::placed("color", Kind::Color, "colour"),
-                    Param::named("roughness", Kind::Number, "roughness"),
-                ],
-            ),
-            decl("metal", Group::Material, &[Param::placed("color", Kind::Color, "colour")]),
-        ],
-    }
+    Catalog { decls: DECLS.to_vec() }
 }
 
+/// A scene with its warnings, or errors.
+pub type Outcome = Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>>;
+
 /// Reads a scene that is called `scene.pss` in the folder `/scenes`.
-pub fn read_with(
-    text: &str,
-    defines: &[(&str, &str)],
-) -> (Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>>, SourceMap) {
+pub fn read_with(text: &str, defines: &[(&str, &str)]) -> (Outcome, SourceMap) {
     let mut sources = SourceMap::default();
     let file = sources.add("scene.pss", Some("/scenes/scene.pss".into()), text);
     let defines: Vec<(String, String)> =

@@ -1,0 +1,228 @@
+//! What users are told, about materials, parameters, what is not there yet, and how it is shown, letter by letter.
+
+mod lang_support;
+
+use lang_support::complaints;
+
+/// A test that a scene is answered with exactly this text.
+macro_rules! says {
+    ($claim:ident: $scene:expr, $text:expr) => {
+        says! { $claim: $scene, -D &[], $text }
+    };
+    ($claim:ident: $scene:expr, -D $defines:expr, $text:expr) => {
+        #[test]
+        fn $claim() {
+            assert_eq!(complaints($scene, $defines).trim_end(), $text.trim());
+        }
+    };
+}
+
+says! {
+    an_unknown_kind_of_material_gets_the_nearest: "material a(kind: \"mate\")\n",
+    r#"
+error[E0507]: `kind` cannot be "mate"
+ --> scene.pss:1:18
+  |
+1 | material a(kind: "mate")
+  |                  ^^^^^^ unknown word
+  = help: did you mean "matte"?
+"#
+}
+
+says! {
+    a_method_wants_a_shape: "draw [sphere(r: 1)].move([1, 0, 0])\n",
+    r#"
+error[E0501]: `.move` is a method of shapes, not of a list
+ --> scene.pss:1:21
+  |
+1 | draw [sphere(r: 1)].move([1, 0, 0])
+  |      -------------- ^^^^ needs a shape
+  |      |
+  |      a list
+  = help: combine the list first: `union(list)`
+"#
+}
+
+says! {
+    a_default_lies_in_its_range: "param a: length = 9 in 1..8\n",
+    r#"
+error[E0503]: `a` is outside of what it allows
+ --> scene.pss:1:19
+  |
+1 | param a: length = 9 in 1..8
+  |                   ^ 9  ---- allowed
+  = help: write a value from 1 to 8
+"#
+}
+
+says! {
+    what_is_not_there_yet_says_so: "fn f(x) = x * 2\nimport \"a.pss\" as b\nprint 3\nexpect 1 < 2\nlet a = for i in 0..3 { i }\nlet b = if true { 1 } else { 2 }\n@ghost draw sphere(r: 1)\nlet c = sphere(r: 1).mirror([1, 0, 0])\n",
+    r#"
+error[E0702]: `fn` is not supported yet
+ --> scene.pss:1:1
+  |
+1 | fn f(x) = x * 2
+  | ^^ understood, but not carried out
+  = help: write the scene without it, or wait for a later version
+
+error[E0702]: `import` is not supported yet
+ --> scene.pss:2:1
+  |
+2 | import "a.pss" as b
+  | ^^^^^^ understood, but not carried out
+  = help: write the scene without it, or wait for a later version
+
+error[E0702]: `print` is not supported yet
+ --> scene.pss:3:1
+  |
+3 | print 3
+  | ^^^^^ understood, but not carried out
+  = help: write the scene without it, or wait for a later version
+
+error[E0702]: `expect` is not supported yet
+ --> scene.pss:4:1
+  |
+4 | expect 1 < 2
+  | ^^^^^^ understood, but not carried out
+  = help: write the scene without it, or wait for a later version
+
+error[E0702]: `for` is not supported yet
+ --> scene.pss:5:9
+  |
+5 | let a = for i in 0..3 { i }
+  |         ^^^^^^^^^^^^^^^^^^^ understood, but not carried out
+  = help: write the scene without it, or wait for a later version
+
+error[E0702]: `if` is not supported yet
+ --> scene.pss:6:9
+  |
+6 | let b = if true { 1 } else { 2 }
+  |         ^^^^^^^^^^^^^^^^^^^^^^^^ understood, but not carried out
+  = help: write the scene without it, or wait for a later version
+
+error[E0702]: `@ghost` is not supported yet
+ --> scene.pss:7:2
+  |
+7 | @ghost draw sphere(r: 1)
+  |  ^^^^^ understood, but not carried out
+  = help: write the scene without it, or wait for a later version
+
+error[E0702]: `mirror` is not supported yet
+ --> scene.pss:8:22
+  |
+8 | let c = sphere(r: 1).mirror([1, 0, 0])
+  |                      ^^^^^^ understood, but not carried out
+  = help: write the scene without it, or wait for a later version
+"#
+}
+
+says! {
+    hiding_a_builtin_is_a_warning: "let sphere = 3\n",
+    r#"
+warning[W0201]: `sphere` hides what the language calls so
+ --> scene.pss:1:5
+  |
+1 | let sphere = 3
+  |     ^^^^^^ defined here
+  = help: take another name
+"#
+}
+
+says! {
+    control_characters_are_escaped: "let a = \"x\x1b[31m\" + 1\n",
+    r#"
+error[E0203]: `+` cannot take a string and a number
+ --> scene.pss:1:23
+  |
+1 | let a = "x\u{1b}[31m" + 1
+  |         ------------- ^ - a number
+  |         |             |
+  |         |             does not fit its operands
+  |         a string
+  = help: numbers or vectors are wanted
+"#
+}
+
+says! {
+    a_tab_and_wide_characters_keep_the_place: "let a =\t\"größe\" + 1\r\n",
+    r#"
+error[E0203]: `+` cannot take a string and a number
+ --> scene.pss:1:17
+  |
+1 | let a =    "größe" + 1
+  |            ------- ^ - a number
+  |            |       |
+  |            |       does not fit its operands
+  |            a string
+  = help: numbers or vectors are wanted
+"#
+}
+
+says! {
+    an_unknown_define_lists_the_parameters: "param bore: length = 4 in 1..8\nparam name = \"a\"\n",
+    -D &[("bohr", "5")],
+    r#"
+error[E0409]: the scene has no parameter `bohr`
+ --> command line:1:1
+  |
+1 | bohr=5
+  | ^^^^ unknown parameter
+  = help: the parameters are `bore`, `name`
+"#
+}
+
+says! {
+    a_define_out_of_range_is_refused: "param bore: length = 4 in 1..8\n",
+    -D &[("bore", "9")],
+    r#"
+error[E0503]: `bore` is outside of what it allows
+ --> command line:1:6
+  |
+1 | bore=9
+  |      ^ 9
+  |
+ ::: scene.pss:1:27
+  |
+1 | param bore: length = 4 in 1..8
+  |                           ---- allowed
+  = help: write a value from 1 to 8
+"#
+}
+
+says! {
+    a_define_of_a_wrong_type_is_refused: "param bore: length = 4 in 1..8\nparam turn = 30deg\n",
+    -D &[("bore", "x y"), ("turn", "40")],
+    r#"
+error[E0509]: `x y` cannot be read as a value
+ --> command line:1:6
+  |
+1 | bore=x y
+  |      ^^^ expected a length
+  = help: write a length, such as `-D bore=2.5`
+
+error[E0502]: `turn` wants an angle, found a bare number
+ --> command line:1:6
+  |
+1 | turn=40
+  |      ^^ which unit?
+  = help: write `40deg`
+"#
+}
+
+says! {
+    a_define_outside_of_a_list_gets_the_nearest: "param mode = \"fast\" in [\"fast\", \"fine\"]\n",
+    -D &[("mode", "fin")],
+    r#"
+error[E0503]: `mode` is outside of what it allows
+ --> command line:1:6
+  |
+1 | mode=fin
+  |      ^^^ not in the list
+  |
+ ::: scene.pss:1:24
+  |
+1 | param mode = "fast" in ["fast", "fine"]
+  |                        ---------------- allowed
+  = help: did you mean "fine"?
+"#
+}

@@ -1,0 +1,189 @@
+//! Nothing that is written makes the language fall over: every text is a scene or an error.
+
+mod lang_support;
+
+use std::time::Instant;
+
+use lang_support::{complaints, read_with, scene};
+use pss::diag::Diagnostic;
+use pss::source::SourceMap;
+
+const LONG: &str = r##"/* all of it */ units(cm)
+param bore: length = 4mm in 0.1..8 "radius" param mode = "a\n\"b" in ["a", "a\n\"b"]
+material clay(kind: "matte", color: #b8683c, roughness: 0.5)
+fn f(x: number = 3, y) = x ** -y * 2
+let list = [1, 2.5e-3, -3,][1] // comment
+let c = { let a = 1 a + 2 } let d = if 1 < 2 and not 3 >= 4 { 1 } else if true { 2 } else { 3 }
+let e = for i in 0..3, j in 0..i { [i, j] } let g = fn (x) => x % 2
+import "other.pss" as other
+print 3 expect volume(a) ~= 6.43 within 0.5% expect inside(s, [0, 0, 0]) is false
+let cut = (points("a.ply") - box([0, 0, 0], b: [1, 1, 1])) | !half_space(x + 2*y <= 3) | union([])
+@ghost @only draw cut.rotate_x(90deg, about: [0, 0, 1]).fit([0, 0, 0], height: 1in)
+camera main(eye: [1, 2, 3], fov: 0.1turn) light(direction: [1, 0, 0], color: rgb(1, 0, 0))
+render(size: [800, 600], aov: ["depth"], integrator: "ao")
+"##;
+
+/// Reads a text and prints what is to be said about it, both ways.
+fn survive(text: &str) {
+    let (outcome, sources) = read_with(text, &[("bore", "3"), ("mode", text)]);
+    let all = match outcome {
+        Ok((_, warnings)) => warnings,
+        Err(errors) => {
+            assert!(errors.iter().any(Diagnostic::is_error), "no error for {text:?}");
+            errors
+        }
+    };
+    assert!(all.iter().all(|d| d.help.is_some() && !d.labels.is_empty()), "{all:?}");
+    pss::report::text(&all, &sources, true);
+    all.iter().for_each(|d| drop(pss::report::json_line(d, &sources)));
+}
+
+fn xorshift(state: &mut u64) -> usize {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    *state as usize
+}
+
+#[test]
+fn the_whole_grammar_is_understood() {
+    let (outcome, sources) = read_with(LONG, &[]);
+    let errors = outcome.expect_err("some of it is not carried out yet");
+    let others: Vec<_> = errors.into_iter().filter(|e| e.code != "E0702").collect();
+    assert!(others.is_empty(), "{}", pss::report::text(&others, &sources, false));
+}
+
+#[test]
+fn every_prefix_is_a_scene_or_an_error() {
+    for end in (0..LONG.len()).filter(|i| LONG.is_char_boundary(*i)) {
+        survive(&LONG[..end]);
+    }
+}
+
+#[test]
+fn every_suffix_is_a_scene_or_an_error() {
+    for start in (0..LONG.len()).filter(|i| LONG.is_char_boundary(*i)) {
+        survive(&LONG[start..]);
+    }
+}
+
+#[test]
+fn random_changes_are_survived() {
+    const PIECES: [&str; 24] = [
+        "(", ")", "[", "]", "{", "}", "\"", "\\", "/*", "//", "\n", "\0", "ö", "1e999", "draw", "@", "#",
+        "..", "**", "!", "-", "'", "\u{1b}", "\u{202e}",
+    ];
+    let mut state = 0x9e37_79b9_7f4a_7c15;
+    for _ in 0..4000 {
+        let mut bytes = LONG.as_bytes().to_vec();
+        for _ in 0..=xorshift(&mut state) % 4 {
+            let at = xorshift(&mut state) % bytes.len();
+            match xorshift(&mut state) % 4 {
+                0 => bytes[at] = xorshift(&mut state) as u8,
+                1 => drop(bytes.remove(at)),
+                2 => {
+                    let end = (at + xorshift(&mut state) % 40).min(bytes.len());
+                    let copy = bytes[at..end].to_vec();
+                    bytes.splice(at..at, copy);
+                }
+                _ => {
+                    let piece = PIECES[xorshift(&mut state) % PIECES.len()];
+                    bytes.splice(at..at, piece.bytes());
+                }
+            }
+        }
+        survive(&String::from_utf8_lossy(&bytes));
+    }
+}
+
+#[test]
+fn deep_nests_are_refused_at_once() {
+    let n = 100_000;
+    let deep = [
+        format!("let a = {}1{}", "(".repeat(n), ")".repeat(n)),
+        format!("let a = {}", "[".repeat(n)),
+        format!("let a = {}1", "-".repeat(n)),
+        format!("let a = {}true", "not ".repeat(n)),
+        format!("draw {}sphere(r: 1)", "!".repeat(n)),
+        format!("let a = 1{}", " ** 1".repeat(n)),
+        format!("let a = {}1", "fn (x) => ".repeat(n)),
+        format!("let a = if true {{ 1 }} {} else {{ 2 }}", "else if true { 1 }".repeat(n)),
+        format!("let a = {}1{}", "{ let b = (".repeat(n), ") b }".repeat(n)),
+    ];
+    for text in deep {
+        let start = Instant::now();
+        let (outcome, _) = read_with(&text, &[("a", &text)]);
+        let errors = outcome.expect_err("too deep");
+        assert_eq!(errors[0].code, "E0701");
+        assert!(start.elapsed().as_secs() < 2, "{:?} for {}", start.elapsed(), &text[..40]);
+    }
+}
+
+#[test]
+fn nests_within_the_limit_are_read() {
+    scene(&format!("let a = {}1{}", "(".repeat(1000), ")".repeat(1000)));
+    scene(&format!("let a = {}1{}", "[".repeat(1000), "]".repeat(1000)));
+    scene(&format!("let a = {}1", "- ".repeat(1000)));
+    scene(&format!("draw {}[]{}", "union([".repeat(499), "])".repeat(499)));
+    scene(&format!("let a = 1{}", " ** 1".repeat(1000)));
+}
+
+#[test]
+fn long_chains_are_flat() {
+    let n = 20_000;
+    scene(&format!("draw sphere(r: 1){}", " | sphere(r: 1)".repeat(n)));
+    scene(&format!("draw sphere(r: 1){}", ".move([1, 0, 0])".repeat(n)));
+    scene(&format!("let a = 1{}", " + 1 - 1".repeat(n)));
+    let lets: String = (0..n).map(|i| format!("let a{i} = a{} | a{}\n", i + 1, i + 1)).collect();
+    scene(&format!("{lets}let a{n} = sphere(r: 1)\ndraw a0"));
+}
+
+#[test]
+fn lists_that_double_end_in_an_error() {
+    let lets: String = (0..60).map(|i| format!("let a{} = [a{i}, a{i}]\n", i + 1)).collect();
+    let (outcome, _) = read_with(&format!("let a0 = sphere(r: 1)\n{lets}draw union(a60)"), &[]);
+    assert_eq!(outcome.expect_err("too many")[0].code, "E0703");
+}
+
+#[test]
+fn time_grows_with_the_text_not_with_its_nesting() {
+    for text in ["(", "[", "f(", "a.b(", "{ let a = "] {
+        let close = |c: &str| {
+            if c.contains('(') {
+                ")"
+            } else if c.contains('[') {
+                "]"
+            } else {
+                " a }"
+            }
+        };
+        for depth in [8, 64, 400] {
+            let start = Instant::now();
+            let nest = format!("let z = {}1{}", text.repeat(depth), close(text).repeat(depth));
+            survive(&nest);
+            survive(&nest[..nest.len() - 1]);
+            assert!(start.elapsed().as_millis() < 500, "{text} {depth} {:?}", start.elapsed());
+        }
+    }
+}
+
+#[test]
+fn twenty_errors_are_shown_and_the_rest_is_counted() {
+    let text: String = (0..25).map(|i| format!("let a{i} = unknown_{i}\n")).collect();
+    let shown = complaints(&text, &[]);
+    assert_eq!(shown.matches("error[E0401]").count(), 20);
+    assert!(shown.ends_with("\nerror: 5 more errors are not shown\n"), "{shown}");
+}
+
+#[test]
+fn json_has_the_promised_fields() {
+    let (outcome, sources) = read_with("let ok = \"ö\"\ndraw sphere(r: \"ö\", at: 3)\n", &[]);
+    let errors = outcome.expect_err("a wrong type");
+    assert_eq!(
+        pss::report::json_line(&errors[0], &sources),
+        r##"{"severity":"error","code":"E0501","message":"`r` wants a length, found a string","file":"scene.pss","line":2,"column":16,"end_line":2,"end_column":19,"help":"write a length, such as `10`","notes":[]}"##
+    );
+    let nowhere = Diagnostic::error("E0601", "a\nb");
+    let line = pss::report::json_line(&nowhere, &SourceMap::default());
+    assert!(line.contains(r#""file":null"#) && !line.contains('\n'), "{line}");
+}
