@@ -109,11 +109,11 @@ impl Samples {
         Aabb::of_points(self.points.iter().copied())
     }
 
-    /// The winding number of the samples, at the opening of [`Winding::OPENING`].
-    pub fn winding(&self) -> Winding {
+    /// The winding number of the samples; `opening` as for [`Winding::new`], such as [`Winding::OPENING`].
+    pub fn winding(&self, opening: f64) -> Winding {
         let measured = Measured::new(&self.points);
         let areas = areas(&self.points, &self.normals, &measured.widths, &measured.table);
-        Winding::new(&self.points, &self.normals, &areas, Winding::OPENING)
+        Winding::new(&self.points, &self.normals, &areas, opening)
     }
 }
 
