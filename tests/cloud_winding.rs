@@ -23,16 +23,38 @@ fn it_agrees_with_the_plain_sum() {
     // The bound falls with the fourth power of the opening.
     for (opening, bound) in [(2.0, 1.5e-2), (3.0, 3e-3), (4.0, 1e-3), (8.0, 4e-5)] {
         let fast = oriented(&points, &normals, opening);
-        let mut worst = [0.0f64; 2];
+        let (mut worst, mut squares) = ([0.0f64; 2], 0.0);
         for _ in 0..400 {
             let x = 3.0 * (DVec3::new(stream.unit(), stream.unit(), stream.unit()) - 0.5);
             let (w, g) = fast.value_and_gradient(x);
             let (w0, g0) = plain.value_and_gradient(x);
             assert_eq!(w.to_bits(), fast.value(x).to_bits());
+            squares += (w - w0).powi(2);
             worst = [worst[0].max((w - w0).abs()), worst[1].max((g - g0).length() / (1.0 + g0.length()))];
         }
-        println!("opening {opening}: value {:e}, gradient {:e}", worst[0], worst[1]);
+        let rms = (squares / 400.0f64).sqrt();
+        println!("opening {opening}: value {:.1e} (rms {rms:.1e}), gradient {:.1e}", worst[0], worst[1]);
         assert!(worst[0] < bound && worst[1] < 10.0 * bound, "opening {opening}: {worst:?}");
+    }
+}
+
+#[test]
+fn the_first_term_left_out_is_the_third() {
+    let mut stream = Stream::new(17);
+    let points: Vec<DVec3> = (0..300).map(|_| stream.direction() * stream.unit()).collect();
+    let normals: Vec<DVec3> = points.iter().map(|_| stream.direction()).collect();
+    let areas = vec![1.0; 300];
+    let [fast, plain] = [1.0, f64::INFINITY].map(|opening| Winding::new(&points, &normals, &areas, opening));
+    for direction in [DVec3::X, DVec3::ONE.normalize(), DVec3::new(0.3, -0.9, 0.2)] {
+        let error = |r: f64| {
+            let (x, y) = (fast.value_and_gradient(direction * r), plain.value_and_gradient(direction * r));
+            [(x.0 - y.0).abs(), (x.1 - y.1).length()]
+        };
+        // The term falls as r^-5, its gradient as r^-6, both the faster the nearer.
+        for (order, [far, near]) in [5, 6].into_iter().zip([0, 1].map(|k| [error(40.0)[k], error(10.0)[k]])) {
+            let ratio = near / far / 4f64.powi(order);
+            assert!((0.5..3.0).contains(&ratio), "order {order}: {near:e} / {far:e}, {ratio}");
+        }
     }
 }
 

@@ -41,7 +41,12 @@ pub fn merge_duplicates(cloud: Cloud) -> Cloud {
             let (count, sum) = given.fold((0, DVec3::ZERO), |(count, sum), n| (count + 1, sum + n));
             let holds = CANCELLED * f64::from(count) < sum.length();
             cancelled += usize::from(0 < count && !holds);
-            to.push(if holds { sum.normalize() } else { DVec3::ZERO });
+            to.push(match count {
+                // Stays as it was, to the bit.
+                1 => sum,
+                _ if holds => sum.normalize(),
+                _ => DVec3::ZERO,
+            });
         }
         if let (Some(from), Some(to)) = (&colors, &mut merged.colors) {
             let sum =

@@ -34,8 +34,8 @@ pub struct Hole {
     pub width: f64,
 }
 
-/// The holes of a cloud, in the order of their first samples: groups of at least [`LEAST_RIM`] samples,
-/// each touched by an empty disc of [`DISC`] spacings in its tangent plane (the rim of the alpha shape,
+/// The holes of a cloud, in the order of their first samples: groups of at least ten samples,
+/// each touched by an empty disc of two spacings' radius in its tangent plane (the rim of the alpha shape,
 /// Edelsbrunner and Muecke 1994), linked where one disc may touch both.
 pub fn holes(samples: &Samples) -> Vec<Hole> {
     let tree = Neighbours::new(&samples.points);

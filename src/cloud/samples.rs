@@ -73,15 +73,12 @@ impl Samples {
         let mut cloud = order::sort_morton(merge_duplicates(cloud));
         let mut measured = Measured::new(&cloud.points);
         if !options.keep_strays {
-            let stray = strays::strays(&cloud.points, &measured.widths, &measured.table);
+            let stray = strays::strays(&cloud.points, &measured.spacing, &measured.widths, &measured.table);
             let kept: Vec<u32> = (0..).zip(&stray).filter(|(_, stray)| !**stray).map(|(i, _)| i).collect();
             let gone = stray.len() - kept.len();
             if 0 < gone {
                 cloud = order::select(cloud, &kept);
-                cloud.notes.push(format!(
-                    "{gone} stray points, far from groups of {} or more, were dropped",
-                    strays::LEAST_GROUP
-                ));
+                cloud.notes.push(format!("{gone} stray points, which carry no surface, were dropped"));
                 check_extent(&cloud.points)?;
                 measured = Measured::new(&cloud.points);
             }
@@ -112,11 +109,11 @@ impl Samples {
         Aabb::of_points(self.points.iter().copied())
     }
 
-    /// The winding number of the samples, at the opening of [`Winding::OPENING`].
-    pub fn winding(&self) -> Winding {
+    /// The winding number of the samples; `opening` as for [`Winding::new`], such as [`Winding::OPENING`].
+    pub fn winding(&self, opening: f64) -> Winding {
         let measured = Measured::new(&self.points);
         let areas = areas(&self.points, &self.normals, &measured.widths, &measured.table);
-        Winding::new(&self.points, &self.normals, &areas, Winding::OPENING)
+        Winding::new(&self.points, &self.normals, &areas, opening)
     }
 }
 

@@ -57,7 +57,8 @@ struct Moments {
 }
 
 impl Winding {
-    /// The opening to take where nothing else is asked for: errors near 1e-4 on scans, far below that of the sampling.
+    /// The opening to take where nothing else is asked for. On random samplings of a torus the value then errs by 2e-3
+    /// (rms; 8e-3 at worst), at 3 by 4e-4, at 4 by 1e-4, at 8 by 4e-6: it falls as the fourth to fifth power.
     pub const OPENING: f64 = 2.0;
 
     /// Builds the tree. Normals have unit length and point out; `areas` are those of [`super::areas()`]. An infinite

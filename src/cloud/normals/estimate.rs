@@ -19,6 +19,19 @@ pub fn estimate(points: &[DVec3], table: &Table) -> Vec<DVec3> {
 
 /// The same for one sample.
 pub fn normal(points: &[DVec3], i: usize, table: &Table) -> DVec3 {
+    spread(points, i, table).1.x_axis
+}
+
+/// How much of the spread around a sample is off its plane: the least eigenvalue over their sum, 0 for a plane,
+/// one third for points that fill space.
+pub fn roughness(points: &[DVec3], i: usize, table: &Table) -> f64 {
+    let [a, b, c] = spread(points, i, table).0;
+    let sum = a + b + c;
+    if 0.0 < sum { a / sum } else { 0.0 }
+}
+
+/// Eigenvalues, ascending, and eigenvectors of the weighted covariance around a sample.
+fn spread(points: &[DVec3], i: usize, table: &Table) -> ([f64; 3], DMat3) {
     let row = &table.row(i)[..table.k().min(NORMAL_NEIGHBOURS)];
     let offsets = || row.iter().map(|&j| points[j as usize] - points[i]);
     let reach = offsets().map(DVec3::length_squared).fold(0.0, f64::max);
@@ -32,5 +45,5 @@ pub fn normal(points: &[DVec3], i: usize, table: &Table) -> DVec3 {
     mean /= sum;
     let outer = |d: DVec3| DMat3::from_cols(d * d.x, d * d.y, d * d.z);
     let covariance = offsets().fold(outer(-mean), |m, d| m + outer(d - mean) * weight(d));
-    symmetric3(covariance).1.x_axis
+    symmetric3(covariance)
 }

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::neighbours::Table;
 
-pub use estimate::{NORMAL_NEIGHBOURS, estimate};
+pub use estimate::{NORMAL_NEIGHBOURS, estimate, roughness};
 pub use improve::improve;
 pub use orient::{agreement, orient};
 

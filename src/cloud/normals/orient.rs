@@ -28,13 +28,17 @@ const FLAT: f64 = 0.02;
 /// mirrored in the plane across the edge. On an arc between the two it is 1 (Koenig and Gumhold 2009);
 /// for the two sides of a thin wall the edge runs along the normals and it is -1 for equal normals, so
 /// that sheets back to back get opposite signs; where it is near 0 the edge says nothing.
-fn accord(p: DVec3, q: DVec3, n: DVec3, m: DVec3) -> f64 {
+///
+/// The second value is how much the edge runs along the surface, 1 where it is tangent: noisy layers of one surface
+/// look like a thin wall to an edge across them, so such edges are trusted last.
+fn accord(p: DVec3, q: DVec3, n: DVec3, m: DVec3) -> (f64, f64) {
     let e = (q - p).normalize_or_zero();
-    n.dot(m) - 2.0 * e.dot(n) * e.dot(m)
+    let (a, b) = (e.dot(n), e.dot(m));
+    (n.dot(m) - 2.0 * a * b, (1.0 - (a * a).max(b * b)).max(0.0))
 }
 
 /// Gives signs to unit normals: spreads them along a minimum spanning tree of the graph of nearest
-/// neighbours with the weight `1 - |accord|` (Hoppe et al. 1992, whose weight is `1 - |n_i . n_j|`), then
+/// neighbours with the weight `1 - |accord| tangency` (Hoppe et al. 1992, whose weight is `1 - |n_i . n_j|`), then
 /// turns each connected piece outward, and those inside an odd number of others inward, as the walls of a cavity.
 pub fn orient(scene: Scene<'_>, areas: &[f64], normals: &mut [DVec3]) {
     let mut groups = spanning_tree(scene, normals);
@@ -62,9 +66,9 @@ fn spanning_tree(scene: Scene<'_>, normals: &[DVec3]) -> Groups {
     for i in 0..points.len() {
         for &j in table.row(i).iter().take(GRAPH) {
             let (a, b) = (i.min(j as usize), i.max(j as usize));
-            let accord = accord(points[a], points[b], normals[a], normals[b]);
+            let (accord, tangent) = accord(points[a], points[b], normals[a], normals[b]);
             // 2^-24 of the weight's range is finer than any estimate; integers sort fast and without surprise.
-            let doubt = ((1.0 - accord.abs()).clamp(0.0, 1.0) * f64::from(1u32 << 24)) as u32;
+            let doubt = ((1.0 - accord.abs() * tangent).clamp(0.0, 1.0) * f64::from(1u32 << 24)) as u32;
             edges.push((doubt, a as u32, b as u32, accord < 0.0));
         }
     }
@@ -157,7 +161,9 @@ pub fn fill_missing(scene: Scene<'_>, normals: &mut [DVec3]) -> usize {
         let vote = |i: usize| {
             let n = estimate::normal(points, i, table);
             let given = table.row(i).iter().map(|&j| j as usize).filter(|&j| normals[j] != DVec3::ZERO);
-            let votes = given.map(|j| accord(points[i], points[j], n, normals[j]));
+            let votes = given
+                .map(|j| accord(points[i], points[j], n, normals[j]))
+                .map(|(accord, tangent)| accord * tangent);
             votes.reduce(|a, b| a + b).map(|sum| if sum < 0.0 { -n } else { n })
         };
         // All of one round see the same neighbours, whatever their order.

@@ -146,7 +146,7 @@ pub fn read<R: BufRead>(input: &mut Input<R>) -> Result<Header, CloudError> {
             ["element", name, count] => {
                 let element = element(name, count, number).map_err(at)?;
                 if elements.iter().any(|known| known.name == element.name) {
-                    return Err(at(CloudError::bad(format!("element `{name}` is declared twice"))));
+                    return Err(at(CloudError::bad(format!("element `{}` is declared twice", shown(name)))));
                 }
                 elements.push(element);
             }
