@@ -12,9 +12,8 @@ fn brute(points: &[DVec3], normals: &[DVec3], h: impl Fn(DVec3) -> f64, unit: f6
     let mut near = Neighbours::default();
     near.reset(DVec3::ZERO, unit, f64::INFINITY);
     for (p, n) in points.iter().zip(normals) {
-        near.push(*p, *n, h(*p));
+        near.push(*p, *n, 1.0 / h(*p));
     }
-    near.finish();
     near
 }
 
@@ -35,8 +34,7 @@ fn check_gradient<W: Weight>(weight: W, degree: usize) {
     // Widths that differ from sample to sample: the derivative must use each sample's own.
     let near = brute(&points, &normals, |p| h * (1.0 + 0.2 * p.x), h);
     let evaluator = Evaluator { weight, degree };
-    let mut short = Neighbours::default();
-    let mut at = |p: DVec3| -> Result<Sample, Stray> { evaluator.sample(&near, p, h, &mut short) };
+    let at = |p: DVec3| -> Result<Sample, Stray> { evaluator.sample(&near, p, p, h) };
     for p in probes(Truth::Torus, 200, 0.5 * h) {
         let sample = at(p).unwrap();
         let d = 1e-4 * h;

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::gradient::gradient;
 use super::neighbours::Neighbours;
-use super::plane::{Plane, settle, start};
+use super::plane::{Jet, Plane, settle, start};
 use super::polynomial::fit;
 use super::{MAX_DEGREE, Weight};
 
@@ -29,7 +29,7 @@ pub enum Stray {
     /// The normals of the samples do not say which side is out.
     #[error("sides undecided")]
     Undecided,
-    /// The neighbours gathered do not reach far enough: gather about the point itself and ask again.
+    /// The neighbours gathered do not reach far enough: gather wider and ask again.
     #[error("neighbours out of reach")]
     OutOfReach,
 }
@@ -66,85 +66,58 @@ const TUBE: f64 = 1.5;
 const HIGHEST: f64 = 1.0;
 /// And must not be steeper there: past 45 degrees another plane should have been found.
 const STEEPEST: f64 = 1.0;
-/// How far q may move from where the search began before the list of samples is cut anew, local units. The list
-/// stays short: its length grows with the square of support + this.
-const ROAM: f64 = 0.3;
 /// The mean normal must agree at least this much with the plane's: normals of two sheets cancel.
 const VOTE: f64 = 0.1;
 
 impl<W: Weight> Evaluator<W> {
-    /// F and its gradient at a world point. `near` must hold all samples whose support reaches the ball of
-    /// [`Neighbours::reach`] about its origin; `width` is the local width at the point, world length, which bounds
-    /// the tube; `short` is room for the samples that weigh at q.
+    /// F and its gradient at a world point.
     ///
-    /// Deterministic: the search starts from the samples' own normals about `at`, so the branch of the local
-    /// minimum depends on the point alone.
-    pub fn sample(
-        &self,
-        near: &Neighbours,
-        at: DVec3,
-        width: f64,
-        short: &mut Neighbours,
-    ) -> Result<Sample, Stray> {
-        let r = (at - near.origin) / near.unit;
+    /// The search for the plane starts from the samples' own normals about `foot`, a point near the surface that is a
+    /// function of `at` alone; so the branch of the local minimum depends on the point alone, never on an earlier
+    /// search. `width` is the local width at the point, world length: it bounds the tube. `near` must hold all
+    /// samples whose support reaches the ball of [`Neighbours::reach`] about its origin; where q or the foot lie
+    /// beyond, the answer is [`Stray::OutOfReach`].
+    pub fn sample(&self, near: &Neighbours, at: DVec3, foot: DVec3, width: f64) -> Result<Sample, Stray> {
+        let local = |p: DVec3| (p - near.origin) / near.unit;
+        let (r, foot) = (local(at), local(foot));
         let k = width / near.unit;
-        if near.reach < r.length() {
+        if near.reach < foot.length() {
             return Err(Stray::OutOfReach);
         }
-        let mut plane = start(self.weight, near, r)?;
-        let support = self.weight.support();
-        // Twice suffices where the start was good; a search that keeps roaming has no minimum to settle in.
-        for _ in 0..4 {
-            if (TUBE + ROAM) * k < plane.t.abs() {
-                return Err(Stray::Outside);
-            }
-            let q = r + plane.t * plane.n;
-            if near.reach < q.length() + ROAM * k {
-                return Err(Stray::OutOfReach);
-            }
-            near.near(q, ROAM * k, support, short);
-            let (found, jet) = settle(self.weight, short, r, plane)?;
-            if (r + found.t * found.n - q).length() <= ROAM * k {
-                return self.finish(short, r, k, &found, &jet.basis, &jet.hessian);
-            }
-            plane = found;
-        }
-        Err(Stray::Unsettled)
-    }
-
-    /// Polynomial, orientation and gradient at a settled plane; `k` is the width at the point, local units.
-    #[allow(clippy::too_many_arguments)] // One value each; a struct for one call would only rename them.
-    fn finish(
-        &self,
-        near: &Neighbours,
-        r: DVec3,
-        k: f64,
-        plane: &Plane,
-        basis: &[DVec3; 2],
-        hessian: &[[f64; 3]; 3],
-    ) -> Result<Sample, Stray> {
+        let begin = start(self.weight, near, r, foot)?;
+        let (plane, jet) = settle(self.weight, near, r, begin)?;
         if TUBE * k < plane.t.abs() {
             return Err(Stray::Outside);
         }
+        if near.reach < (r + plane.t * plane.n).length() {
+            return Err(Stray::OutOfReach);
+        }
+        self.finish(near, r, k, &plane, &jet)
+    }
+
+    /// Polynomial, orientation and gradient at a settled plane; `k` is the width at the point, local units.
+    fn finish(&self, near: &Neighbours, r: DVec3, k: f64, plane: &Plane, jet: &Jet) -> Result<Sample, Stray> {
+        // The Hessian's basis, turned with the last step.
         let n = plane.n;
-        let e1 = (basis[0] - n * n.dot(basis[0])).normalize();
-        let basis = [e1, n.cross(e1) * n.cross(e1).dot(basis[1]).signum()];
+        let e1 = (jet.basis[0] - n * n.dot(jet.basis[0])).normalize();
+        let e2 = n.cross(e1);
+        let basis = [e1, if e2.dot(jet.basis[1]) < 0.0 { -e2 } else { e2 }];
         let fit = fit(self.weight, near, r, plane, basis, self.degree.min(MAX_DEGREE))?;
-        let steep = if fit.degree == 0 { 0.0 } else { fit.c[1].hypot(fit.c[2]) };
+        let steep = if fit.degree == 0 { 0.0 } else { (fit.c[1] * fit.c[1] + fit.c[2] * fit.c[2]).sqrt() };
         if HIGHEST * k < fit.c[0].abs() || STEEPEST < steep {
             return Err(Stray::Outside);
         }
         if fit.vote.abs() < VOTE {
             return Err(Stray::Undecided);
         }
-        let inward = gradient(self.weight, near, r, plane, basis, hessian, &fit)?;
+        let inward = gradient(self.weight, near, r, plane, basis, &jet.hessian, &fit)?;
         // n points into the solid where the outward normals stand against it.
         let sign = -fit.vote.signum();
         Ok(Sample {
             value: sign * (plane.t + fit.c[0]) * near.unit,
             gradient: sign * inward,
             plane_normal: -sign * n,
-            drift: fit.drift[0].hypot(fit.drift[1]) / k,
+            drift: (fit.drift[0] * fit.drift[0] + fit.drift[1] * fit.drift[1]).sqrt() / k,
             degree: fit.degree,
         })
     }

@@ -11,6 +11,7 @@
 //! which is linear in the displacement of q and in dn; both are summed over the samples once. All vectors here are
 //! written in the basis (e1, e2, n), in which a sample stands at x = (u, v, z) from q.
 
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use glam::DVec3;
 
 use super::neighbours::Neighbours;
@@ -18,7 +19,7 @@ use super::plane::Plane;
 use super::polynomial::{Fit, evaluate};
 use super::{MAX_DEGREE, Stray, Weight};
 use crate::num::cholesky::Cholesky;
-use crate::num::lanes::F4;
+use crate::num::lanes::{Lanes, sum};
 
 /// Linear forms in the displacement of r, q and n, summed over the samples.
 struct Forms {
@@ -63,8 +64,20 @@ pub(super) fn gradient(
     Ok(local[0] * basis[0] + local[1] * basis[1] + local[2] * plane.n)
 }
 
-#[inline(always)]
 fn forms<const D: usize>(
+    weight: impl Weight,
+    near: &Neighbours,
+    r: DVec3,
+    plane: &Plane,
+    basis: [DVec3; 2],
+    fit: &Fit,
+) -> Forms {
+    dispatch!(Level::new(), simd => forms_in::<_, D>(simd, weight, near, r, plane, basis, fit))
+}
+
+#[inline(always)]
+fn forms_in<S: Simd, const D: usize>(
+    simd: S,
     weight: impl Weight,
     near: &Neighbours,
     r: DVec3,
@@ -73,14 +86,15 @@ fn forms<const D: usize>(
     fit: &Fit,
 ) -> Forms {
     let Plane { n, t } = *plane;
-    let zero = F4::ZERO;
+    let zero = Lanes::splat(simd, 0.0);
     let (mut c_sum, mut uu, mut uv, mut vv, mut un, mut vn) = (zero, zero, zero, zero, zero, zero);
     let (mut tu, mut tv, mut tn) = (zero, zero, zero);
     let (mut gx, mut gy, mut gz, mut h1, mut h2) = (zero, zero, zero, zero, zero);
-    for (p, _, ih2) in near.blocks() {
+    for block in 0..near.blocks() {
+        let (p, ih2) = near.block(simd, block);
         let d = p.minus(r);
         let (u, v, s) = (d.dot(e1), d.dot(e2), d.dot(n) - t);
-        let [w, w1, w2] = weight.jet((u * u + v * v + s * s) * ih2);
+        let [w, w1, w2] = weight.jet(simd, (u * u + v * v + s * s) * ih2);
         let (w1, w2) = (w1 * ih2, w2 * (ih2 * ih2));
         let s2 = s * s;
         // M_n: d = p - r moves against r; c = 2 s theta - 2 t s^2 theta'.
@@ -101,7 +115,7 @@ fn forms<const D: usize>(
         tv += m2 * v;
         tn += m1 + m2 * s;
         // dc_0.
-        let [[shape, shape_u, shape_v], [g, g_u, g_v]] = evaluate::<D>(&fit.a0, &fit.c, u, v);
+        let [[shape, shape_u, shape_v], [g, g_u, g_v]] = evaluate::<_, D>(simd, &fit.a0, &fit.c, u, v);
         let residual = s - g;
         let (w_res, w_shape) = (w * residual, w * shape);
         let pull = w1 * shape * residual * 2.0;
@@ -113,12 +127,11 @@ fn forms<const D: usize>(
         h1 += w_shape * u - by_u * s;
         h2 += w_shape * v - by_v * s;
     }
-    let c = c_sum.sum();
-    let uv = uv.sum();
+    let (c, uv) = (sum(c_sum), sum(uv));
     Forms {
-        m_n: [DVec3::new(uu.sum() - c, uv, un.sum()), DVec3::new(uv, vv.sum() - c, vn.sum())],
-        m_t: DVec3::new(tu.sum(), tv.sum(), tn.sum()),
-        by_x: DVec3::new(gx.sum(), gy.sum(), gz.sum()),
-        by_n: [h1.sum(), h2.sum()],
+        m_n: [DVec3::new(sum(uu) - c, uv, sum(un)), DVec3::new(uv, sum(vv) - c, sum(vn))],
+        m_t: DVec3::new(sum(tu), sum(tv), sum(tn)),
+        by_x: DVec3::new(sum(gx), sum(gy), sum(gz)),
+        by_n: [sum(h1), sum(h2)],
     }
 }

@@ -13,13 +13,14 @@
 //! On the unit sphere with the tangent basis B the Riemannian Hessian is B^T J_nn B - (n . J_n) I. For the Gaussian
 //! these are the formulas of the literature; here theta is any weight. Checked against finite differences.
 
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use glam::{DMat3, DVec3};
 
 use super::neighbours::Neighbours;
 use super::{Stray, Weight};
 use crate::num::cholesky::Cholesky;
 use crate::num::eigen::symmetric3;
-use crate::num::lanes::{F4, V4};
+use crate::num::lanes::{Lanes, Lanes3, sum};
 
 /// A plane in the frame of the point r, local units: q = r + t n.
 #[derive(Clone, Copy, Debug)]
@@ -49,76 +50,99 @@ pub(super) struct Jet {
 const MAX_HALVINGS: usize = 12;
 /// Two to four steps are usual; more than this means that there is no minimum to settle in.
 const MAX_STEPS: usize = 24;
-/// A step below this many local units (radians) is followed by an error of its square: below rounding.
-const LAST_STEP: f64 = 3e-8;
+/// A step below this many local units (radians) leaves an error of its square: a ten-thousandth of the finest
+/// tolerance anyone asks for.
+const LAST_STEP: f64 = 1e-6;
 /// The largest single step, radians and local units: the quadratic model is good for no more.
 const LONGEST_STEP: f64 = 0.5;
 
-/// Where the search starts: the mean normal of the oriented samples, weighted about r, which points at the
-/// sheet that r belongs to where two are in reach; the plane through their weighted centroid. It depends on r
-/// alone, never on an earlier search, and so does the branch it leads to.
-pub(super) fn start(weight: impl Weight, near: &Neighbours, r: DVec3) -> Result<Plane, Stray> {
-    let (mut sum, mut centroid, mut normal) = (F4::ZERO, V4::default(), V4::default());
-    for (p, outward, ih2) in near.blocks() {
-        let d = p.minus(r);
-        let w = weight.value(d.length_squared() * ih2);
-        sum += w;
-        d.add_to(w, &mut centroid);
-        outward.add_to(w, &mut normal);
-    }
-    let sum = sum.sum();
-    // Below this share of one full sample nothing is near: r lies outside every support.
+/// Where the search starts: the mean normal of the oriented samples, weighted about the foot, which belongs to the
+/// sheet nearest to r where two are in reach; the plane through their weighted centroid.
+pub(super) fn start(weight: impl Weight, near: &Neighbours, r: DVec3, foot: DVec3) -> Result<Plane, Stray> {
+    let (sum, centroid, normal) = dispatch!(Level::new(), simd => means(simd, weight, near, foot));
+    // Below this share of one full sample nothing is near: the foot lies outside every support.
     const NOTHING: f64 = 1e-6;
     if sum < NOTHING {
         return Err(Stray::Sparse);
     }
-    let centroid = centroid.sum() / sum;
-    let mean = normal.sum() / sum;
+    let (centroid, mean) = (centroid / sum, normal / sum);
     // Normals that cancel to less than this are those of two sheets, or of none.
     const COHERENT: f64 = 0.3;
-    let n =
-        if COHERENT < mean.length() { -mean.normalize() } else { principal(weight, near, r, centroid, mean) };
-    Ok(Plane { n, t: n.dot(centroid) })
+    let n = if COHERENT < mean.length() {
+        -mean.normalize()
+    } else {
+        principal(weight, near, foot, centroid, mean)
+    };
+    Ok(Plane { n, t: n.dot(foot + centroid - r) })
+}
+
+/// The sum of the weights about a point, and of the weighted positions from it and normals.
+#[inline(always)]
+fn means<S: Simd>(simd: S, weight: impl Weight, near: &Neighbours, r: DVec3) -> (f64, DVec3, DVec3) {
+    let mut total = Lanes::splat(simd, 0.0);
+    let (mut centroid, mut normal) = (Lanes3::zero(simd), Lanes3::zero(simd));
+    for block in 0..near.blocks() {
+        let (p, ih2) = near.block(simd, block);
+        let d = p.minus(r);
+        let w = weight.value(simd, d.length_squared() * ih2);
+        total += w;
+        d.add_to(w, &mut centroid);
+        near.normals(simd, block).add_to(w, &mut normal);
+    }
+    (sum(total), centroid.sum(), normal.sum())
 }
 
 /// The direction of least spread of the weighted samples about their centroid, turned against `outward`.
 fn principal(weight: impl Weight, near: &Neighbours, r: DVec3, centroid: DVec3, outward: DVec3) -> DVec3 {
-    let mut m = DMat3::ZERO;
-    for (p, _, ih2) in near.blocks() {
-        let d = p.minus(r);
-        let w = weight.value(d.length_squared() * ih2);
-        let e = d.minus(centroid);
-        let (mut cx, mut cy, mut cz) = (V4::default(), V4::default(), V4::default());
-        e.add_to(w * e.x, &mut cx);
-        e.add_to(w * e.y, &mut cy);
-        e.add_to(w * e.z, &mut cz);
-        m += DMat3::from_cols(cx.sum(), cy.sum(), cz.sum());
-    }
+    let m = dispatch!(Level::new(), simd => spread(simd, weight, near, r, centroid));
     let (_, vectors) = symmetric3(m);
     let n = vectors.x_axis;
     if n.dot(outward) <= 0.0 { n } else { -n }
 }
 
+#[inline(always)]
+fn spread<S: Simd>(simd: S, weight: impl Weight, near: &Neighbours, r: DVec3, centroid: DVec3) -> DMat3 {
+    let mut columns = [Lanes3::zero(simd); 3];
+    for block in 0..near.blocks() {
+        let (p, ih2) = near.block(simd, block);
+        let d = p.minus(r);
+        let w = weight.value(simd, d.length_squared() * ih2);
+        let e = d.minus(centroid);
+        for (column, along) in columns.iter_mut().zip([e.x, e.y, e.z]) {
+            e.add_to(w * along, column);
+        }
+    }
+    let [x, y, z] = columns.map(Lanes3::sum);
+    DMat3::from_cols(x, y, z)
+}
+
 /// J and its first two derivatives at a plane.
 pub(super) fn jet(weight: impl Weight, near: &Neighbours, r: DVec3, plane: &Plane) -> Jet {
+    dispatch!(Level::new(), simd => jet_in(simd, weight, near, r, plane))
+}
+
+#[inline(always)]
+fn jet_in<S: Simd>(simd: S, weight: impl Weight, near: &Neighbours, r: DVec3, plane: &Plane) -> Jet {
     let Plane { n, t } = *plane;
     let (e1, e2) = n.any_orthonormal_pair();
-    let (mut sum, mut energy, mut j_t, mut j_tt) = (F4::ZERO, F4::ZERO, F4::ZERO, F4::ZERO);
-    let (mut g1, mut g2, mut gn) = (F4::ZERO, F4::ZERO, F4::ZERO);
-    let (mut h11, mut h12, mut h22, mut h1t, mut h2t) = (F4::ZERO, F4::ZERO, F4::ZERO, F4::ZERO, F4::ZERO);
-    for (p, _, ih2) in near.blocks() {
+    let zero = Lanes::splat(simd, 0.0);
+    let (mut total, mut energy, mut j_t, mut j_tt) = (zero, zero, zero, zero);
+    let (mut g1, mut g2, mut gn) = (zero, zero, zero);
+    let (mut h11, mut h12, mut h22, mut h1t, mut h2t) = (zero, zero, zero, zero, zero);
+    for block in 0..near.blocks() {
+        let (p, ih2) = near.block(simd, block);
         let d = p.minus(r);
         let (a, b, c) = (d.dot(e1), d.dot(e2), d.dot(n));
         let s = c - t;
         let rho = (a * a + b * b + s * s) * ih2;
-        let [w, w1, w2] = weight.jet(rho);
+        let [w, w1, w2] = weight.jet(simd, rho);
         let (w1, w2) = (w1 * ih2, w2 * (ih2 * ih2));
         let s2 = s * s;
         let (ws, w1s2) = (w * s, w1 * s2);
         let first = (ws - w1s2 * t) * 2.0;
         let second = (w + w) - w1 * s * (8.0 * t) + w2 * s2 * (4.0 * t * t);
         let mixed = w1 * s * (4.0 * t) - (w + w) - w1s2 * 6.0 + w2 * (s2 * s) * (4.0 * t);
-        sum += w;
+        total += w;
         energy += ws * s;
         j_t += (ws + w1s2 * s) * -2.0;
         j_tt += (w + w) + w1s2 * 10.0 + w2 * (s2 * s2) * 4.0;
@@ -132,14 +156,14 @@ pub(super) fn jet(weight: impl Weight, near: &Neighbours, r: DVec3, plane: &Plan
         h1t += mixed * a;
         h2t += mixed * b;
     }
-    let gn = gn.sum();
-    let (h12, h1t, h2t) = (h12.sum(), h1t.sum(), h2t.sum());
+    let gn = sum(gn);
+    let (h12, h1t, h2t) = (sum(h12), sum(h1t), sum(h2t));
     Jet {
-        energy: energy.sum(),
-        weight: sum.sum(),
+        energy: sum(energy),
+        weight: sum(total),
         basis: [e1, e2],
-        gradient: [g1.sum(), g2.sum(), j_t.sum()],
-        hessian: [[h11.sum() - gn, h12, h1t], [h12, h22.sum() - gn, h2t], [h1t, h2t, j_tt.sum()]],
+        gradient: [sum(g1), sum(g2), sum(j_t)],
+        hessian: [[sum(h11) - gn, h12, h1t], [h12, sum(h22) - gn, h2t], [h1t, h2t, sum(j_tt)]],
     }
 }
 
@@ -162,7 +186,7 @@ fn step(jet: &Jet) -> [f64; 3] {
             (scaled(0, v.x_axis) + scaled(1, v.y_axis) + scaled(2, v.z_axis)).to_array()
         }
     };
-    let longest = y[0].hypot(y[1]).max(y[2].abs());
+    let longest = (y[0] * y[0] + y[1] * y[1]).sqrt().max(y[2].abs());
     if longest <= LONGEST_STEP { y } else { y.map(|x| x * (LONGEST_STEP / longest)) }
 }
 
@@ -189,7 +213,7 @@ pub(super) fn settle(
             return Err(Stray::Sparse);
         }
         let y = step(&here);
-        let size = y[0].hypot(y[1]).max(y[2].abs());
+        let size = (y[0] * y[0] + y[1] * y[1]).sqrt().max(y[2].abs());
         if size.is_nan() {
             return Err(Stray::IllConditioned);
         }

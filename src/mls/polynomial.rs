@@ -10,7 +10,8 @@ use super::neighbours::Neighbours;
 use super::plane::Plane;
 use super::{Stray, Weight};
 use crate::num::cholesky::Cholesky;
-use crate::num::lanes::F4;
+use crate::num::lanes::{Lanes, sum};
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use glam::DVec3;
 
 /// Coefficients of a polynomial of degree 4.
@@ -104,8 +105,19 @@ struct Sums {
     vote: f64,
 }
 
-#[inline(always)]
 fn sums<const D: usize>(
+    weight: impl Weight,
+    near: &Neighbours,
+    r: DVec3,
+    plane: &Plane,
+    basis: [DVec3; 2],
+) -> Sums {
+    dispatch!(Level::new(), simd => sums_in::<_, D>(simd, weight, near, r, plane, basis))
+}
+
+#[inline(always)]
+fn sums_in<S: Simd, const D: usize>(
+    simd: S,
     weight: impl Weight,
     near: &Neighbours,
     r: DVec3,
@@ -113,15 +125,17 @@ fn sums<const D: usize>(
     [e1, e2]: [DVec3; 2],
 ) -> Sums {
     let Plane { n, t } = *plane;
-    let mut moments = [F4::ZERO; MAX_MOMENTS];
-    let mut heights = [F4::ZERO; MAX_COEFFICIENTS];
-    let (mut squared, mut vote, mut du, mut dv) = (F4::ZERO, F4::ZERO, F4::ZERO, F4::ZERO);
-    for (p, outward, ih2) in near.blocks() {
+    let zero = Lanes::splat(simd, 0.0);
+    let mut moments = [zero; MAX_MOMENTS];
+    let mut heights = [zero; MAX_COEFFICIENTS];
+    let (mut squared, mut vote, mut du, mut dv) = (zero, zero, zero, zero);
+    for block in 0..near.blocks() {
+        let (p, ih2) = near.block(simd, block);
         let d = p.minus(r);
         let (u, v, z) = (d.dot(e1), d.dot(e2), d.dot(n) - t);
-        let w = weight.value((u * u + v * v + z * z) * ih2);
+        let w = weight.value(simd, (u * u + v * v + z * z) * ih2);
         squared += w * w;
-        vote += w * outward.dot(n);
+        vote += w * near.normals(simd, block).dot(n);
         du += w * u;
         dv += w * v;
         // w u^a v^b, row by row: powers of u grow along a, powers of v along b.
@@ -131,37 +145,39 @@ fn sums<const D: usize>(
             let (mut m, mut mz) = (row, row_z);
             for a in 0..=2 * D - b {
                 moments[index(a, b)] += m;
-                m = m * u;
+                m *= u;
                 if a + b <= D {
                     heights[index(a, b)] += mz;
-                    mz = mz * u;
+                    mz *= u;
                 }
             }
-            row = row * v;
-            row_z = row_z * v;
+            row *= v;
+            row_z *= v;
         }
     }
     Sums {
-        moments: moments.map(F4::sum),
-        heights: heights.map(F4::sum),
-        drift: [du.sum(), dv.sum()],
-        squared: squared.sum(),
-        vote: vote.sum(),
+        moments: moments.map(sum),
+        heights: heights.map(sum),
+        drift: [sum(du), sum(dv)],
+        squared: sum(squared),
+        vote: sum(vote),
     }
 }
 
-/// Values and derivatives along u and v of two polynomials of one degree at four places.
+/// Values and derivatives along u and v of two polynomials of one degree at eight places.
 #[inline(always)]
-pub(super) fn evaluate<const D: usize>(
+pub(super) fn evaluate<S: Simd, const D: usize>(
+    simd: S,
     p: &[f64; MAX_COEFFICIENTS],
     q: &[f64; MAX_COEFFICIENTS],
-    u: F4,
-    v: F4,
-) -> [[F4; 3]; 2] {
-    let mut out = [[F4::ZERO; 3]; 2];
+    u: Lanes<S>,
+    v: Lanes<S>,
+) -> [[Lanes<S>; 3]; 2] {
+    let zero = Lanes::splat(simd, 0.0);
+    let mut out = [[zero; 3]; 2];
     // Horner's rule in v over Horner's rules in u.
     for b in (0..=D).rev() {
-        let mut inner = [[F4::ZERO; 2]; 2];
+        let mut inner = [[zero; 2]; 2];
         for a in (0..=D - b).rev() {
             for (row, c) in inner.iter_mut().zip([p, q]) {
                 row[1] = row[1] * u + row[0];

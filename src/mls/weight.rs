@@ -1,7 +1,9 @@
 //! Weights: functions of the distance between a sample and the reference point alone, zero beyond a stated
 //! support, so that every part of the program sees the same surface.
 
-use crate::num::lanes::F4;
+use fearless_simd::{Simd, prelude::*};
+
+use crate::num::lanes::{LANES, Lanes};
 
 /// A weight theta(rho), where rho is the squared distance over the squared width of the sample.
 pub trait Weight: Copy + Send + Sync + std::fmt::Debug + 'static {
@@ -9,10 +11,10 @@ pub trait Weight: Copy + Send + Sync + std::fmt::Debug + 'static {
     fn support(&self) -> f64;
 
     /// The weight.
-    fn value(&self, rho: F4) -> F4;
+    fn value<S: Simd>(&self, simd: S, rho: Lanes<S>) -> Lanes<S>;
 
     /// The weight and its first two derivatives with respect to rho.
-    fn jet(&self, rho: F4) -> [F4; 3];
+    fn jet<S: Simd>(&self, simd: S, rho: Lanes<S>) -> [Lanes<S>; 3];
 }
 
 /// theta = (1 - rho/8)^8: close to the Gaussian near the sample, seven continuous derivatives at its end, and
@@ -26,16 +28,16 @@ impl Weight for Compact {
     }
 
     #[inline(always)]
-    fn value(&self, rho: F4) -> F4 {
-        let s = (F4::splat(1.0) - rho * 0.125).at_least(0.0);
+    fn value<S: Simd>(&self, simd: S, rho: Lanes<S>) -> Lanes<S> {
+        let s = (Lanes::splat(simd, 1.0) - rho * 0.125).max(Lanes::splat(simd, 0.0));
         let s2 = s * s;
         let s4 = s2 * s2;
         s4 * s4
     }
 
     #[inline(always)]
-    fn jet(&self, rho: F4) -> [F4; 3] {
-        let s = (F4::splat(1.0) - rho * 0.125).at_least(0.0);
+    fn jet<S: Simd>(&self, simd: S, rho: Lanes<S>) -> [Lanes<S>; 3] {
+        let s = (Lanes::splat(simd, 1.0) - rho * 0.125).max(Lanes::splat(simd, 0.0));
         let s2 = s * s;
         let s4 = s2 * s2;
         let s6 = s4 * s2;
@@ -65,14 +67,14 @@ impl Weight for Gaussian {
     }
 
     #[inline(always)]
-    fn value(&self, rho: F4) -> F4 {
-        let (cut, e) = (self.support, exp_minus(rho));
-        F4(std::array::from_fn(|i| if rho.0[i] < cut { e.0[i] } else { 0.0 }))
+    fn value<S: Simd>(&self, simd: S, rho: Lanes<S>) -> Lanes<S> {
+        let e = exp_minus(simd, rho);
+        rho.simd_lt(Lanes::splat(simd, self.support)).select(e, Lanes::splat(simd, 0.0))
     }
 
     #[inline(always)]
-    fn jet(&self, rho: F4) -> [F4; 3] {
-        let e = self.value(rho);
+    fn jet<S: Simd>(&self, simd: S, rho: Lanes<S>) -> [Lanes<S>; 3] {
+        let e = self.value(simd, rho);
         [e, -e, e]
     }
 }
@@ -82,7 +84,7 @@ impl Weight for Gaussian {
 /// x = k ln 2 - f with |f| <= ln 2 / 2; the Taylor series of exp to degree 13 ends below 1e-17. Only
 /// additions and products, so the bits are the same on every machine.
 #[inline(always)]
-fn exp_minus(x: F4) -> F4 {
+fn exp_minus<S: Simd>(simd: S, x: Lanes<S>) -> Lanes<S> {
     // Adding 1.5 * 2^52 rounds to the nearest whole number and leaves it in the low bits.
     const ROUND: f64 = 6_755_399_441_055_744.0;
     const LN2_HI: f64 = 0.693_147_180_369_123_8;
@@ -96,52 +98,78 @@ fn exp_minus(x: F4) -> F4 {
         }
         c
     };
-    let shifted = x.map(|x| -(if x < 700.0 { x } else { 700.0 })) * std::f64::consts::LOG2_E + ROUND;
+    let x = -x.min(Lanes::splat(simd, 700.0));
+    let shifted = x * std::f64::consts::LOG2_E + ROUND;
     let k = shifted - ROUND;
-    let f = (-x.map(|x| if x < 700.0 { x } else { 700.0 }) - k * LN2_HI) - k * LN2_LO;
-    let mut p = F4::splat(C[13]);
+    let f = (x - k * LN2_HI) - k * LN2_LO;
+    let mut p = Lanes::splat(simd, C[13]);
     for c in C[..13].iter().rev() {
         p = p * f + *c;
     }
-    let scale = shifted.map(|s| f64::from_bits((s.to_bits().wrapping_add(1023)) << 52));
-    p * scale
+    let power = |s: f64| f64::from_bits(s.to_bits().wrapping_add(1023) << 52);
+    let scale: [f64; LANES] = std::array::from_fn(|i| power(shifted[i]));
+    p * Lanes::from_slice(simd, &scale)
 }
 
 #[cfg(test)]
 mod tests {
+    use fearless_simd::{Level, dispatch};
+
     use super::*;
+
+    fn value(w: &impl Weight, rho: f64) -> f64 {
+        dispatch!(Level::new(), simd => w.value(simd, Lanes::splat(simd, rho))[0])
+    }
+
+    fn jet(w: &impl Weight, rho: f64) -> [f64; 3] {
+        dispatch!(Level::new(), simd => w.jet(simd, Lanes::splat(simd, rho)).map(|l| l[0]))
+    }
 
     #[test]
     fn the_exponential_agrees_with_the_library_to_two_ulp() {
+        let whole = Gaussian { support: f64::INFINITY };
         for i in 0..4000 {
-            let x = i as f64 * 0.0091;
-            let got = exp_minus(F4::splat(x)).0[0];
-            let want = (-x).exp();
+            let x = f64::from(i) * 0.0091;
+            let (got, want) = (value(&whole, x), (-x).exp());
             assert!((got - want).abs() <= 2.0 * f64::EPSILON * want, "{x}: {got:e} {want:e}");
         }
     }
 
     #[test]
     fn derivatives_are_those_of_the_value() {
-        fn check(w: impl Weight) {
+        fn check(w: &impl Weight) {
             for i in 1..70 {
-                let (x, d) = (i as f64 * 0.1, 1e-5);
-                let v = |x: f64| w.value(F4::splat(x)).0[0];
-                let [_, d1, d2] = w.jet(F4::splat(x)).map(|l| l.0[0]);
-                assert!((d1 - (v(x + d) - v(x - d)) / (2.0 * d)).abs() < 1e-9);
-                assert!((d2 - (v(x + d) - 2.0 * v(x) + v(x - d)) / (d * d)).abs() < 1e-5);
+                let (x, d) = (f64::from(i) * 0.1, 1e-5);
+                let [v, d1, d2] = jet(w, x);
+                assert_eq!(v, value(w, x));
+                assert!((d1 - (value(w, x + d) - value(w, x - d)) / (2.0 * d)).abs() < 1e-9);
+                assert!((d2 - (value(w, x + d) - 2.0 * v + value(w, x - d)) / (d * d)).abs() < 1e-5);
             }
         }
-        check(Compact);
-        check(Gaussian::for_tolerance(1e-7));
+        check(&Compact);
+        check(&Gaussian::for_tolerance(1e-7));
     }
 
     #[test]
     fn nothing_weighs_beyond_the_support() {
-        assert_eq!(Compact.value(F4::splat(8.0)).0[0], 0.0);
-        assert_eq!(Compact.jet(F4::splat(1e6)).map(|l| l.0[0].abs()), [0.0; 3]);
+        assert_eq!(value(&Compact, 8.0), 0.0);
+        assert_eq!(jet(&Compact, 1e6).map(f64::abs), [0.0; 3]);
         let g = Gaussian::for_tolerance(1e-7);
-        assert_eq!(g.value(F4::splat(g.support())).0[0], 0.0);
-        assert_eq!(g.value(F4::splat(1e6)).0[0], 0.0);
+        assert_eq!(value(&g, g.support()), 0.0);
+        assert_eq!(value(&g, 1e6), 0.0);
+    }
+
+    #[test]
+    fn every_level_of_instructions_gives_the_same_bits() {
+        let levels = [Some(Level::baseline()), Some(Level::new())];
+        let at = |level: Level, x: f64| {
+            let g = Gaussian::for_tolerance(1e-7);
+            dispatch!(level, simd => g.jet(simd, Lanes::splat(simd, x)).map(|l| l[3].to_bits()))
+        };
+        for i in 0..1000 {
+            let x = f64::from(i) * 0.02;
+            let bits: Vec<_> = levels.into_iter().flatten().map(|l| at(l, x)).collect();
+            assert!(bits.windows(2).all(|w| w[0] == w[1]), "{x}");
+        }
     }
 }

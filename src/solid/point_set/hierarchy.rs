@@ -16,6 +16,7 @@ pub struct Hierarchy {
     pub normals: Vec<DVec3>,
     /// Widths h_i, which are also the radii of the trust spheres.
     pub widths: Vec<f64>,
+    inverse_widths: Vec<f64>,
     /// For each sample here, its index in the lists that [`Hierarchy::new`] was given.
     pub original: Vec<u32>,
     nodes: Vec<Node>,
@@ -57,6 +58,7 @@ impl Hierarchy {
             points: order.iter().map(|i| points[pick(i)]).collect(),
             normals: order.iter().map(|i| normals[pick(i)]).collect(),
             widths: order.iter().map(|i| widths[pick(i)]).collect(),
+            inverse_widths: order.iter().map(|i| 1.0 / widths[pick(i)]).collect(),
             original: order,
             nodes,
         }
@@ -122,11 +124,10 @@ impl Hierarchy {
                 let (p, h) = (self.points[i], self.widths[i]);
                 let far = r + k * h;
                 if (p - center).length_squared() < far * far {
-                    out.push(p, self.normals[i], h);
+                    out.push(p, self.normals[i], self.inverse_widths[i]);
                 }
             }
         }
-        out.finish();
     }
 }
 

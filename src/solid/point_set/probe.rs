@@ -24,7 +24,6 @@ pub(super) struct Probe {
 #[derive(Debug, Default)]
 pub(super) struct Room {
     near: Neighbours,
-    short: Neighbours,
     ready: bool,
     /// Solves of plane and polynomial.
     pub projections: u64,
@@ -37,10 +36,11 @@ impl Room {
     }
 }
 
-/// How far about the foot the first gathering reaches, local units: points of a trust sphere lie within 1 of it.
-const REACH: f64 = 1.1;
-/// And the second, where the first did not suffice: tube and roaming together.
-const FAR_REACH: f64 = 2.3;
+/// How far about the foot the first gathering reaches, local units: q is seldom farther from it, and what is gathered
+/// serves the next places of the line too.
+const REACH: f64 = 0.6;
+/// And the second, where the first did not suffice: the whole tube.
+const FAR_REACH: f64 = 2.0;
 
 impl PointSet {
     /// F at arc length `s` of a line of unit direction; `spheres` are the trust spheres of the band around it.
@@ -87,22 +87,23 @@ impl PointSet {
         room.projections += 1;
         let width = self.samples.widths[sample];
         let support = evaluator.weight.support();
+        // The foot on the plane of the nearest sample: a function of the point alone.
+        let (p, n) = (self.samples.points[sample], self.samples.normals[sample]);
+        let foot = at - n * n.dot(at - p);
         if room.ready {
-            let answer = evaluator.sample(&room.near, at, width, &mut room.short);
+            let answer = evaluator.sample(&room.near, at, foot, width);
             if answer != Err(Stray::OutOfReach) {
                 return answer;
             }
         }
-        let (p, n) = (self.samples.points[sample], self.samples.normals[sample]);
-        let foot = at - n * n.dot(at - p);
         room.ready = true;
         self.samples.gather(foot, width, REACH, support, &mut room.near);
-        let answer = evaluator.sample(&room.near, at, width, &mut room.short);
+        let answer = evaluator.sample(&room.near, at, foot, width);
         if answer != Err(Stray::OutOfReach) {
             return answer;
         }
-        self.samples.gather(at, width, FAR_REACH, support, &mut room.near);
-        match evaluator.sample(&room.near, at, width, &mut room.short) {
+        self.samples.gather(foot, width, FAR_REACH, support, &mut room.near);
+        match evaluator.sample(&room.near, at, foot, width) {
             Err(Stray::OutOfReach) => Err(Stray::Outside),
             answer => answer,
         }
