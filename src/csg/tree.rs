@@ -78,7 +78,7 @@ pub enum Kind {
 /// The link from a child to the node above it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Up {
-    /// The node above; [`Tree::ROOT`] is the first.
+    /// The node above; 0 is the root.
     pub node: u32,
     /// Whether the child counts where it is false.
     pub negated: bool,
