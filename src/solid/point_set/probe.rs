@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::hierarchy::{Hierarchy, Reach};
 use super::{Kernel, PointSet};
 use crate::geom::Ray;
-use crate::mls::{Evaluator, Neighbours, Sample, Stray, Weight};
+use crate::mls::{AnyWay, Evaluator, Facing, Guess, Neighbours, SameWay, Sample, Stray, Weight};
 
 /// F at a place of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,40 +70,54 @@ impl PointSet {
 
     /// F at a point for which a sample is known whose trust sphere holds it.
     pub(super) fn field_near(&self, at: DVec3, sample: usize, room: &mut Room) -> Result<Sample, Stray> {
-        let degree = self.degree;
         match self.kernel {
-            Kernel::Compact(weight) => self.field(Evaluator { weight, degree }, at, sample, room),
-            Kernel::Gaussian(weight) => self.field(Evaluator { weight, degree }, at, sample, room),
+            Kernel::Compact(weight) => self.field_facing(weight, at, sample, room),
+            Kernel::Gaussian(weight) => self.field_facing(weight, at, sample, room),
         }
     }
 
-    fn field<W: Weight>(
+    fn field_facing<W: Weight>(
         &self,
-        evaluator: Evaluator<W>,
+        weight: W,
+        at: DVec3,
+        sample: usize,
+        room: &mut Room,
+    ) -> Result<Sample, Stray> {
+        let degree = self.degree;
+        if self.mixed {
+            self.field(&Evaluator { weight, facing: AnyWay, degree }, at, sample, room)
+        } else {
+            self.field(&Evaluator { weight, facing: SameWay, degree }, at, sample, room)
+        }
+    }
+
+    fn field<W: Weight, A: Facing>(
+        &self,
+        evaluator: &Evaluator<W, A>,
         at: DVec3,
         sample: usize,
         room: &mut Room,
     ) -> Result<Sample, Stray> {
         room.projections += 1;
-        let width = self.samples.widths[sample];
         let support = evaluator.weight.support();
         // The foot on the plane of the nearest sample: a function of the point alone.
-        let (p, n) = (self.samples.points[sample], self.samples.normals[sample]);
-        let foot = at - n * n.dot(at - p);
+        let (p, outward) = (self.samples.points[sample], self.samples.normals[sample]);
+        let width = self.samples.widths[sample];
+        let guess = Guess { foot: at - outward * outward.dot(at - p), outward, width };
         if room.ready {
-            let answer = evaluator.sample(&room.near, at, foot, width);
+            let answer = evaluator.sample(&room.near, at, &guess);
             if answer != Err(Stray::OutOfReach) {
                 return answer;
             }
         }
         room.ready = true;
-        self.samples.gather(foot, width, REACH, support, &mut room.near);
-        let answer = evaluator.sample(&room.near, at, foot, width);
+        self.samples.gather(guess.foot, width, REACH, support, &mut room.near);
+        let answer = evaluator.sample(&room.near, at, &guess);
         if answer != Err(Stray::OutOfReach) {
             return answer;
         }
-        self.samples.gather(foot, width, FAR_REACH, support, &mut room.near);
-        match evaluator.sample(&room.near, at, foot, width) {
+        self.samples.gather(guess.foot, width, FAR_REACH, support, &mut room.near);
+        match evaluator.sample(&room.near, at, &guess) {
             Err(Stray::OutOfReach) => Err(Stray::Outside),
             answer => answer,
         }
