@@ -31,8 +31,8 @@ fn probes(truth: Truth, count: usize, within: f64) -> Vec<DVec3> {
 }
 
 fn check_gradient(weight: impl Weight, facing: impl Facing, degree: usize) {
-    let (points, normals) = Truth::Torus.cloud(600);
-    let h = 2.0 * (4.0 * 0.4 * std::f64::consts::PI.powi(2) / 600.0).sqrt();
+    let (points, normals) = Truth::Torus.cloud(1500);
+    let h = 2.0 * (4.0 * 0.4 * std::f64::consts::PI.powi(2) / 1500.0).sqrt();
     // Widths that differ from sample to sample: the derivative must use each sample's own.
     let near = brute(&points, &normals, |p| h * (1.0 + 0.2 * p.x), h);
     let evaluator = Evaluator { weight, facing, degree };

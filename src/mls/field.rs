@@ -46,6 +46,8 @@ pub struct Sample {
     /// How far the weighted mean of the samples lies from q within the plane, in local units: near zero inside
     /// a sampled surface, 0.51 (compact weight) or 0.56 (Gaussian) widths at its straight edge.
     pub drift: f64,
+    /// The share of the weight that is left after samples facing another way are left out.
+    pub kept: f64,
     /// The degree that the samples allowed.
     pub degree: usize,
 }
@@ -132,6 +134,7 @@ impl<W: Weight, A: Facing> Evaluator<W, A> {
             gradient: sign * inward,
             plane_normal: -sign * n,
             drift: (fit.drift[0] * fit.drift[0] + fit.drift[1] * fit.drift[1]).sqrt() / k,
+            kept: fit.kept,
             degree: fit.degree,
         })
     }

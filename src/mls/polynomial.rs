@@ -42,6 +42,8 @@ pub(super) struct Fit {
     pub drift: [f64; 2],
     /// Sum over the samples of weight times outward normal along n, over the sum of the weights.
     pub vote: f64,
+    /// The share of the weight that is left after samples facing another way are left out.
+    pub kept: f64,
 }
 
 /// Fits at a settled plane.
@@ -87,6 +89,7 @@ pub(super) fn fit<W: Weight, A: Facing>(
                 a0: factor.solve(&unit),
                 drift: sums.drift.map(|d| d / total),
                 vote: sums.vote / total,
+                kept: total / sums.whole,
             });
         }
     }
@@ -104,6 +107,7 @@ struct Sums {
     drift: [f64; 2],
     squared: f64,
     vote: f64,
+    whole: f64,
 }
 
 fn sums<W: Weight, A: Facing, const D: usize>(
@@ -129,13 +133,14 @@ fn sums_in<S: Simd, W: Weight, A: Facing, const D: usize>(
     let zero = Lanes::splat(simd, 0.0);
     let mut moments = [zero; MAX_MOMENTS];
     let mut heights = [zero; MAX_COEFFICIENTS];
-    let (mut squared, mut vote, mut du, mut dv) = (zero, zero, zero, zero);
+    let (mut squared, mut vote, mut whole, mut du, mut dv) = (zero, zero, zero, zero, zero);
     for block in 0..near.blocks() {
         let (p, ih2) = near.block(simd, block);
         let d = p.minus(r);
         let (u, v, z) = (d.dot(e1), d.dot(e2), d.dot(n) - t);
         let facing = near.normals(simd, block).dot(n);
         let mut w = weight.value(simd, (u * u + v * v + z * z) * ih2);
+        whole += w;
         if A::VARIES {
             w *= A::jet(simd, -facing)[0];
         }
@@ -166,6 +171,7 @@ fn sums_in<S: Simd, W: Weight, A: Facing, const D: usize>(
         drift: [sum(du), sum(dv)],
         squared: sum(squared),
         vote: sum(vote),
+        whole: sum(whole),
     }
 }
 

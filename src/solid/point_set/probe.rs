@@ -48,11 +48,19 @@ impl PointSet {
         let at = line.at(s);
         let sample = nearest(&self.samples, at, s, spheres);
         let width = self.samples.widths[sample];
-        let limit = if self.near_rim(sample) { self.kernel.edge() } else { f64::INFINITY };
         let field = self.field_near(at, sample, room);
         let stray = field.is_err();
-        let f = field.ok().filter(|f| f.drift <= limit).map(|f| [f.value, f.gradient.dot(line.dir)]);
+        let f = field.ok().filter(|f| !self.has_ended(sample, f));
+        let f = f.map(|f| [f.value, f.gradient.dot(line.dir)]);
         Probe { s, width, f, stray }
+    }
+
+    /// Whether the samples have ended at a point: beyond the rim of a hole that is capped, and beyond the edge of a
+    /// wall so thin and sharp that its far side was left out. There the polynomial only extrapolates.
+    fn has_ended(&self, sample: usize, field: &Sample) -> bool {
+        // Where less than this share of the weight faces another way nothing has been left out.
+        const WHOLE: f64 = 0.99;
+        (field.kept < WHOLE || self.near_rim(sample)) && self.kernel.edge() < field.drift
     }
 
     /// grad F at arc length `s`.
