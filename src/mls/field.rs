@@ -6,7 +6,7 @@ use super::gradient::gradient;
 use super::neighbours::Neighbours;
 use super::plane::{Jet, Plane, settle, start};
 use super::polynomial::fit;
-use super::{MAX_DEGREE, Weight};
+use super::{Facing, MAX_DEGREE, Weight};
 
 /// Why a point has no projection. A failure that belongs to the method, not an error of the program.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
@@ -46,15 +46,30 @@ pub struct Sample {
     /// How far the weighted mean of the samples lies from q within the plane, in local units: near zero inside
     /// a sampled surface, 0.51 (compact weight) or 0.56 (Gaussian) widths at its straight edge.
     pub drift: f64,
+    /// The share of the weight that is left after samples facing another way are left out.
+    pub kept: f64,
     /// The degree that the samples allowed.
     pub degree: usize,
 }
 
-/// Evaluates F for one weight and degree.
+/// What is known near a point before its plane is searched: functions of the point alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Guess {
+    /// A point near the surface, world position.
+    pub foot: DVec3,
+    /// The outward unit normal there, nearly.
+    pub outward: DVec3,
+    /// The local width, world length.
+    pub width: f64,
+}
+
+/// Evaluates F for one weight, facing and degree.
 #[derive(Clone, Copy, Debug)]
-pub struct Evaluator<W> {
+pub struct Evaluator<W, A> {
     /// The weight.
     pub weight: W,
+    /// Which samples weigh, by the way they face.
+    pub facing: A,
     /// The degree of the polynomial, at most [`MAX_DEGREE`].
     pub degree: usize,
 }
@@ -69,23 +84,24 @@ const STEEPEST: f64 = 1.0;
 /// The mean normal must agree at least this much with the plane's: normals of two sheets cancel.
 const VOTE: f64 = 0.1;
 
-impl<W: Weight> Evaluator<W> {
+impl<W: Weight, A: Facing> Evaluator<W, A> {
     /// F and its gradient at a world point.
     ///
     /// The search for the plane starts from the samples' own normals about `foot`, a point near the surface that is a
-    /// function of `at` alone; so the branch of the local minimum depends on the point alone, never on an earlier
-    /// search. `width` is the local width at the point, world length: it bounds the tube. `near` must hold all
+    /// function of `at` alone, as is the outward normal there; so the branch of the local minimum depends on the point
+    /// alone, never on an earlier search. The local width bounds the tube. `near` must hold all
     /// samples whose support reaches the ball of [`Neighbours::reach`] about its origin; where q or the foot lie
     /// beyond, the answer is [`Stray::OutOfReach`].
-    pub fn sample(&self, near: &Neighbours, at: DVec3, foot: DVec3, width: f64) -> Result<Sample, Stray> {
+    pub fn sample(&self, near: &Neighbours, at: DVec3, guess: &Guess) -> Result<Sample, Stray> {
+        let Guess { foot, outward, width } = *guess;
         let local = |p: DVec3| (p - near.origin) / near.unit;
         let (r, foot) = (local(at), local(foot));
         let k = width / near.unit;
         if near.reach < foot.length() {
             return Err(Stray::OutOfReach);
         }
-        let begin = start(self.weight, near, r, foot)?;
-        let (plane, jet) = settle(self.weight, near, r, begin)?;
+        let begin = start(self.weight, self.facing, near, r, foot, outward)?;
+        let (plane, jet) = settle(self.weight, self.facing, near, r, begin)?;
         if TUBE * k < plane.t.abs() {
             return Err(Stray::Outside);
         }
@@ -102,7 +118,7 @@ impl<W: Weight> Evaluator<W> {
         let e1 = (jet.basis[0] - n * n.dot(jet.basis[0])).normalize();
         let e2 = n.cross(e1);
         let basis = [e1, if e2.dot(jet.basis[1]) < 0.0 { -e2 } else { e2 }];
-        let fit = fit(self.weight, near, r, plane, basis, self.degree.min(MAX_DEGREE))?;
+        let fit = fit(self.weight, self.facing, near, r, plane, basis, self.degree.min(MAX_DEGREE))?;
         let steep = if fit.degree == 0 { 0.0 } else { (fit.c[1] * fit.c[1] + fit.c[2] * fit.c[2]).sqrt() };
         if HIGHEST * k < fit.c[0].abs() || STEEPEST < steep {
             return Err(Stray::Outside);
@@ -110,7 +126,7 @@ impl<W: Weight> Evaluator<W> {
         if fit.vote.abs() < VOTE {
             return Err(Stray::Undecided);
         }
-        let inward = gradient(self.weight, near, r, plane, basis, &jet.hessian, &fit)?;
+        let inward = gradient(self.weight, self.facing, near, r, plane, basis, &jet.hessian, &fit)?;
         // n points into the solid where the outward normals stand against it.
         let sign = -fit.vote.signum();
         Ok(Sample {
@@ -118,6 +134,7 @@ impl<W: Weight> Evaluator<W> {
             gradient: sign * inward,
             plane_normal: -sign * n,
             drift: (fit.drift[0] * fit.drift[0] + fit.drift[1] * fit.drift[1]).sqrt() / k,
+            kept: fit.kept,
             degree: fit.degree,
         })
     }

@@ -17,7 +17,7 @@ use glam::DVec3;
 use super::neighbours::Neighbours;
 use super::plane::Plane;
 use super::polynomial::{Fit, evaluate};
-use super::{MAX_DEGREE, Stray, Weight};
+use super::{Facing, MAX_DEGREE, Stray, Weight};
 use crate::num::cholesky::Cholesky;
 use crate::num::lanes::{Lanes, sum};
 
@@ -36,8 +36,9 @@ struct Forms {
 /// grad F in the frame of the world (F and r share their unit, so it has none).
 ///
 /// Fails with [`Stray::Saddle`] where the plane is not a strict local minimum.
-pub(super) fn gradient(
-    weight: impl Weight,
+pub(super) fn gradient<W: Weight, A: Facing>(
+    weight: W,
+    _: A,
     near: &Neighbours,
     r: DVec3,
     plane: &Plane,
@@ -46,11 +47,11 @@ pub(super) fn gradient(
     fit: &Fit,
 ) -> Result<DVec3, Stray> {
     let f = match fit.degree {
-        0 => forms::<0>(weight, near, r, plane, basis, fit),
-        1 => forms::<1>(weight, near, r, plane, basis, fit),
-        2 => forms::<2>(weight, near, r, plane, basis, fit),
-        3 => forms::<3>(weight, near, r, plane, basis, fit),
-        _ => forms::<MAX_DEGREE>(weight, near, r, plane, basis, fit),
+        0 => forms::<W, A, 0>(weight, near, r, plane, basis, fit),
+        1 => forms::<W, A, 1>(weight, near, r, plane, basis, fit),
+        2 => forms::<W, A, 2>(weight, near, r, plane, basis, fit),
+        3 => forms::<W, A, 3>(weight, near, r, plane, basis, fit),
+        _ => forms::<W, A, MAX_DEGREE>(weight, near, r, plane, basis, fit),
     };
     // A minimum so flat that this many digits are lost is none.
     const PIVOT: f64 = 1e-8;
@@ -64,21 +65,21 @@ pub(super) fn gradient(
     Ok(local[0] * basis[0] + local[1] * basis[1] + local[2] * plane.n)
 }
 
-fn forms<const D: usize>(
-    weight: impl Weight,
+fn forms<W: Weight, A: Facing, const D: usize>(
+    weight: W,
     near: &Neighbours,
     r: DVec3,
     plane: &Plane,
     basis: [DVec3; 2],
     fit: &Fit,
 ) -> Forms {
-    dispatch!(Level::new(), simd => forms_in::<_, D>(simd, weight, near, r, plane, basis, fit))
+    dispatch!(Level::new(), simd => forms_in::<_, W, A, D>(simd, weight, near, r, plane, basis, fit))
 }
 
 #[inline(always)]
-fn forms_in<S: Simd, const D: usize>(
+fn forms_in<S: Simd, W: Weight, A: Facing, const D: usize>(
     simd: S,
-    weight: impl Weight,
+    weight: W,
     near: &Neighbours,
     r: DVec3,
     plane: &Plane,
@@ -87,16 +88,36 @@ fn forms_in<S: Simd, const D: usize>(
 ) -> Forms {
     let Plane { n, t } = *plane;
     let zero = Lanes::splat(simd, 0.0);
-    let (mut c_sum, mut uu, mut uv, mut vv, mut un, mut vn) = (zero, zero, zero, zero, zero, zero);
+    let (mut c_sum, mut uu, mut uv, mut vu, mut vv) = (zero, zero, zero, zero, zero);
+    let (mut un, mut vn) = (zero, zero);
     let (mut tu, mut tv, mut tn) = (zero, zero, zero);
     let (mut gx, mut gy, mut gz, mut h1, mut h2) = (zero, zero, zero, zero, zero);
     for block in 0..near.blocks() {
         let (p, ih2) = near.block(simd, block);
         let d = p.minus(r);
         let (u, v, s) = (d.dot(e1), d.dot(e2), d.dot(n) - t);
-        let [w, w1, w2] = weight.jet(simd, (u * u + v * v + s * s) * ih2);
-        let (w1, w2) = (w1 * ih2, w2 * (ih2 * ih2));
+        let [mut w, w1, w2] = weight.jet(simd, (u * u + v * v + s * s) * ih2);
+        let (mut w1, mut w2) = (w1 * ih2, w2 * (ih2 * ih2));
         let s2 = s * s;
+        let mut by_facing = None;
+        if A::VARIES {
+            let m = near.normals(simd, block);
+            let (m1, m2) = (m.dot(e1), m.dot(e2));
+            let [f, f1, _] = A::jet(simd, -m.dot(n));
+            // M_n gains - phi' m (d(theta s^2)/dr)^T = phi' m (2 s^2 theta' x + 2 s theta n)^T.
+            let (k, kn) = (w1 * s2 * f1 * 2.0, w * s * f1 * 2.0);
+            let along = k * s + kn;
+            uu += k * m1 * u;
+            uv += k * m1 * v;
+            vu += k * m2 * u;
+            vv += k * m2 * v;
+            un += along * m1;
+            vn += along * m2;
+            by_facing = Some((w * f1, m1, m2));
+            w *= f;
+            w1 *= f;
+            w2 *= f;
+        }
         // M_n: d = p - r moves against r; c = 2 s theta - 2 t s^2 theta'.
         c_sum += (w * s - w1 * s2 * t) * 2.0;
         let k1 = w1 * s * (4.0 * t) - (w + w);
@@ -105,6 +126,7 @@ fn forms_in<S: Simd, const D: usize>(
         let (ku, kv) = (k2 * u, k2 * v);
         uu += ku * u;
         uv += ku * v;
+        vu += ku * v;
         vv += kv * v;
         un += along * u;
         vn += along * v;
@@ -126,10 +148,16 @@ fn forms_in<S: Simd, const D: usize>(
         gz += pull * s + w_shape;
         h1 += w_shape * u - by_u * s;
         h2 += w_shape * v - by_v * s;
+        if let Some((w_turn, m1, m2)) = by_facing {
+            // dw = theta phi' dc with dc = -m . dn.
+            let pull = w_turn * shape * residual;
+            h1 -= pull * m1;
+            h2 -= pull * m2;
+        }
     }
-    let (c, uv) = (sum(c_sum), sum(uv));
+    let c = sum(c_sum);
     Forms {
-        m_n: [DVec3::new(sum(uu) - c, uv, sum(un)), DVec3::new(uv, sum(vv) - c, sum(vn))],
+        m_n: [DVec3::new(sum(uu) - c, sum(uv), sum(un)), DVec3::new(sum(vu), sum(vv) - c, sum(vn))],
         m_t: DVec3::new(sum(tu), sum(tv), sum(tn)),
         by_x: DVec3::new(sum(gx), sum(gy), sum(gz)),
         by_n: [sum(h1), sum(h2)],

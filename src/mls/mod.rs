@@ -19,9 +19,9 @@ mod plane;
 mod polynomial;
 mod weight;
 
-pub use field::{Evaluator, Sample, Stray};
+pub use field::{Evaluator, Guess, Sample, Stray};
 pub use neighbours::Neighbours;
-pub use weight::{Compact, Gaussian, Weight};
+pub use weight::{AnyWay, Compact, Facing, Gaussian, SameWay, Weight};
 
 /// The highest degree of the polynomial.
 pub const MAX_DEGREE: usize = 4;

@@ -10,6 +10,15 @@
 //! J_tt = sum 2 theta + 10 s^2 theta' + 4 s^4 theta''
 //! ```
 //!
+//! A sample with outward normal m may carry a factor phi(c), c = -m.n, of the way it faces; it multiplies all of the
+//! above and adds, with phi' and phi'',
+//!
+//! ```text
+//! J_n  -= theta s^2 phi' m
+//! J_nn -= (2 s theta - 2 t s^2 theta') phi' (d m^T + m d^T) - theta s^2 phi'' m m^T
+//! J_nt -= (-2 s theta - 2 s^3 theta') phi' m
+//! ```
+//!
 //! On the unit sphere with the tangent basis B the Riemannian Hessian is B^T J_nn B - (n . J_n) I. For the Gaussian
 //! these are the formulas of the literature; here theta is any weight. Checked against finite differences.
 
@@ -17,7 +26,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use glam::{DMat3, DVec3};
 
 use super::neighbours::Neighbours;
-use super::{Stray, Weight};
+use super::{Facing, Stray, Weight};
 use crate::num::cholesky::Cholesky;
 use crate::num::eigen::symmetric3;
 use crate::num::lanes::{Lanes, Lanes3, sum};
@@ -50,16 +59,24 @@ pub(super) struct Jet {
 const MAX_HALVINGS: usize = 12;
 /// Two to four steps are usual; more than this means that there is no minimum to settle in.
 const MAX_STEPS: usize = 24;
-/// A step below this many local units (radians) leaves an error of its square: a ten-thousandth of the finest
-/// tolerance anyone asks for.
-const LAST_STEP: f64 = 1e-6;
+/// A step below this many local units (radians) leaves an error of its square in F, below rounding, and of this size in
+/// the Hessian that the gradient of F is made with.
+const LAST_STEP: f64 = 1e-7;
 /// The largest single step, radians and local units: the quadratic model is good for no more.
 const LONGEST_STEP: f64 = 0.5;
 
-/// Where the search starts: the mean normal of the oriented samples, weighted about the foot, which belongs to the
-/// sheet nearest to r where two are in reach; the plane through their weighted centroid.
-pub(super) fn start(weight: impl Weight, near: &Neighbours, r: DVec3, foot: DVec3) -> Result<Plane, Stray> {
-    let (sum, centroid, normal) = dispatch!(Level::new(), simd => means(simd, weight, near, foot));
+/// Where the search starts: the mean normal of the samples that face like `outward`, weighted about the foot; the
+/// plane through their weighted centroid.
+pub(super) fn start<W: Weight, A: Facing>(
+    weight: W,
+    _: A,
+    near: &Neighbours,
+    r: DVec3,
+    foot: DVec3,
+    outward: DVec3,
+) -> Result<Plane, Stray> {
+    let (sum, centroid, normal) =
+        dispatch!(Level::new(), simd => means::<_, W, A>(simd, weight, near, foot, outward));
     // Below this share of one full sample nothing is near: the foot lies outside every support.
     const NOTHING: f64 = 1e-6;
     if sum < NOTHING {
@@ -78,16 +95,26 @@ pub(super) fn start(weight: impl Weight, near: &Neighbours, r: DVec3, foot: DVec
 
 /// The sum of the weights about a point, and of the weighted positions from it and normals.
 #[inline(always)]
-fn means<S: Simd>(simd: S, weight: impl Weight, near: &Neighbours, r: DVec3) -> (f64, DVec3, DVec3) {
+fn means<S: Simd, W: Weight, A: Facing>(
+    simd: S,
+    weight: W,
+    near: &Neighbours,
+    r: DVec3,
+    outward: DVec3,
+) -> (f64, DVec3, DVec3) {
     let mut total = Lanes::splat(simd, 0.0);
     let (mut centroid, mut normal) = (Lanes3::zero(simd), Lanes3::zero(simd));
     for block in 0..near.blocks() {
         let (p, ih2) = near.block(simd, block);
+        let m = near.normals(simd, block);
         let d = p.minus(r);
-        let w = weight.value(simd, d.length_squared() * ih2);
+        let mut w = weight.value(simd, d.length_squared() * ih2);
+        if A::VARIES {
+            w *= A::jet(simd, m.dot(outward))[0];
+        }
         total += w;
         d.add_to(w, &mut centroid);
-        near.normals(simd, block).add_to(w, &mut normal);
+        m.add_to(w, &mut normal);
     }
     (sum(total), centroid.sum(), normal.sum())
 }
@@ -117,12 +144,18 @@ fn spread<S: Simd>(simd: S, weight: impl Weight, near: &Neighbours, r: DVec3, ce
 }
 
 /// J and its first two derivatives at a plane.
-pub(super) fn jet(weight: impl Weight, near: &Neighbours, r: DVec3, plane: &Plane) -> Jet {
-    dispatch!(Level::new(), simd => jet_in(simd, weight, near, r, plane))
+pub(super) fn jet<W: Weight, A: Facing>(weight: W, _: A, near: &Neighbours, r: DVec3, plane: &Plane) -> Jet {
+    dispatch!(Level::new(), simd => jet_in::<_, W, A>(simd, weight, near, r, plane))
 }
 
 #[inline(always)]
-fn jet_in<S: Simd>(simd: S, weight: impl Weight, near: &Neighbours, r: DVec3, plane: &Plane) -> Jet {
+fn jet_in<S: Simd, W: Weight, A: Facing>(
+    simd: S,
+    weight: W,
+    near: &Neighbours,
+    r: DVec3,
+    plane: &Plane,
+) -> Jet {
     let Plane { n, t } = *plane;
     let (e1, e2) = n.any_orthonormal_pair();
     let zero = Lanes::splat(simd, 0.0);
@@ -134,18 +167,42 @@ fn jet_in<S: Simd>(simd: S, weight: impl Weight, near: &Neighbours, r: DVec3, pl
         let d = p.minus(r);
         let (a, b, c) = (d.dot(e1), d.dot(e2), d.dot(n));
         let s = c - t;
-        let rho = (a * a + b * b + s * s) * ih2;
-        let [w, w1, w2] = weight.jet(simd, rho);
+        let [w, w1, w2] = weight.jet(simd, (a * a + b * b + s * s) * ih2);
         let (w1, w2) = (w1 * ih2, w2 * (ih2 * ih2));
         let s2 = s * s;
         let (ws, w1s2) = (w * s, w1 * s2);
-        let first = (ws - w1s2 * t) * 2.0;
-        let second = (w + w) - w1 * s * (8.0 * t) + w2 * s2 * (4.0 * t * t);
-        let mixed = w1 * s * (4.0 * t) - (w + w) - w1s2 * 6.0 + w2 * (s2 * s) * (4.0 * t);
-        total += w;
-        energy += ws * s;
-        j_t += (ws + w1s2 * s) * -2.0;
-        j_tt += (w + w) + w1s2 * 10.0 + w2 * (s2 * s2) * 4.0;
+        let mut first = (ws - w1s2 * t) * 2.0;
+        let mut second = (w + w) - w1 * s * (8.0 * t) + w2 * s2 * (4.0 * t * t);
+        let mut mixed = w1 * s * (4.0 * t) - (w + w) - w1s2 * 6.0 + w2 * (s2 * s) * (4.0 * t);
+        let mut along = (ws + w1s2 * s) * -2.0;
+        let mut twice = (w + w) + w1s2 * 10.0 + w2 * (s2 * s2) * 4.0;
+        let (mut weight_here, mut energy_here) = (w, ws * s);
+        if A::VARIES {
+            let m = near.normals(simd, block);
+            let (m1, m2, mn) = (m.dot(e1), m.dot(e2), m.dot(n));
+            let [f, f1, f2] = A::jet(simd, -mn);
+            // What turns n also changes who faces the same way.
+            let (turn, cross, own) = (energy_here * f1, first * f1, energy_here * f2);
+            g1 -= turn * m1;
+            g2 -= turn * m2;
+            gn -= turn * mn;
+            h11 += m1 * (own * m1 - cross * (a + a));
+            h12 += own * m1 * m2 - cross * (a * m2 + b * m1);
+            h22 += m2 * (own * m2 - cross * (b + b));
+            h1t -= along * f1 * m1;
+            h2t -= along * f1 * m2;
+            weight_here *= f;
+            energy_here *= f;
+            first *= f;
+            second *= f;
+            mixed *= f;
+            along *= f;
+            twice *= f;
+        }
+        total += weight_here;
+        energy += energy_here;
+        j_t += along;
+        j_tt += twice;
         g1 += first * a;
         g2 += first * b;
         gn += first * c;
@@ -200,14 +257,15 @@ fn moved(plane: &Plane, jet: &Jet, y: [f64; 3], by: f64) -> Plane {
 ///
 /// Fails with [`Stray::Unsettled`] where the search does not end, and with [`Stray::Sparse`] where it leaves the
 /// samples behind (the energy falls to nothing at infinity: the spurious minimum of the un-normalised problem).
-pub(super) fn settle(
-    weight: impl Weight,
+pub(super) fn settle<W: Weight, A: Facing>(
+    weight: W,
+    facing: A,
     near: &Neighbours,
     r: DVec3,
     start: Plane,
 ) -> Result<(Plane, Jet), Stray> {
     let mut plane = start;
-    let mut here = jet(weight, near, r, &plane);
+    let mut here = jet(weight, facing, near, r, &plane);
     for _ in 0..MAX_STEPS {
         if here.weight <= 0.0 {
             return Err(Stray::Sparse);
@@ -224,7 +282,7 @@ pub(super) fn settle(
         let mut halvings = 0;
         loop {
             let next = moved(&plane, &here, y, by);
-            let there = jet(weight, near, r, &next);
+            let there = jet(weight, facing, near, r, &next);
             // Rounding of a sum of that many terms of this size must not refuse a step.
             let slack = 1e-12 * here.energy.abs() + 1e-28 * here.weight;
             if there.energy <= here.energy + slack || halvings == MAX_HALVINGS {

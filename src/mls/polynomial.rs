@@ -8,7 +8,7 @@
 use super::MAX_DEGREE;
 use super::neighbours::Neighbours;
 use super::plane::Plane;
-use super::{Stray, Weight};
+use super::{Facing, Stray, Weight};
 use crate::num::cholesky::Cholesky;
 use crate::num::lanes::{Lanes, sum};
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
@@ -42,11 +42,14 @@ pub(super) struct Fit {
     pub drift: [f64; 2],
     /// Sum over the samples of weight times outward normal along n, over the sum of the weights.
     pub vote: f64,
+    /// The share of the weight that is left after samples facing another way are left out.
+    pub kept: f64,
 }
 
 /// Fits at a settled plane.
-pub(super) fn fit(
-    weight: impl Weight,
+pub(super) fn fit<W: Weight, A: Facing>(
+    weight: W,
+    _: A,
     near: &Neighbours,
     r: DVec3,
     plane: &Plane,
@@ -54,11 +57,11 @@ pub(super) fn fit(
     degree: usize,
 ) -> Result<Fit, Stray> {
     let sums = match degree {
-        0 => sums::<0>(weight, near, r, plane, basis),
-        1 => sums::<1>(weight, near, r, plane, basis),
-        2 => sums::<2>(weight, near, r, plane, basis),
-        3 => sums::<3>(weight, near, r, plane, basis),
-        _ => sums::<MAX_DEGREE>(weight, near, r, plane, basis),
+        0 => sums::<W, A, 0>(weight, near, r, plane, basis),
+        1 => sums::<W, A, 1>(weight, near, r, plane, basis),
+        2 => sums::<W, A, 2>(weight, near, r, plane, basis),
+        3 => sums::<W, A, 3>(weight, near, r, plane, basis),
+        _ => sums::<W, A, MAX_DEGREE>(weight, near, r, plane, basis),
     };
     let total = sums.moments[0];
     // A fit needs this many effective samples per coefficient, (sum w)^2 / sum w^2 being their number.
@@ -86,6 +89,7 @@ pub(super) fn fit(
                 a0: factor.solve(&unit),
                 drift: sums.drift.map(|d| d / total),
                 vote: sums.vote / total,
+                kept: total / sums.whole,
             });
         }
     }
@@ -103,22 +107,23 @@ struct Sums {
     drift: [f64; 2],
     squared: f64,
     vote: f64,
+    whole: f64,
 }
 
-fn sums<const D: usize>(
-    weight: impl Weight,
+fn sums<W: Weight, A: Facing, const D: usize>(
+    weight: W,
     near: &Neighbours,
     r: DVec3,
     plane: &Plane,
     basis: [DVec3; 2],
 ) -> Sums {
-    dispatch!(Level::new(), simd => sums_in::<_, D>(simd, weight, near, r, plane, basis))
+    dispatch!(Level::new(), simd => sums_in::<_, W, A, D>(simd, weight, near, r, plane, basis))
 }
 
 #[inline(always)]
-fn sums_in<S: Simd, const D: usize>(
+fn sums_in<S: Simd, W: Weight, A: Facing, const D: usize>(
     simd: S,
-    weight: impl Weight,
+    weight: W,
     near: &Neighbours,
     r: DVec3,
     plane: &Plane,
@@ -128,14 +133,19 @@ fn sums_in<S: Simd, const D: usize>(
     let zero = Lanes::splat(simd, 0.0);
     let mut moments = [zero; MAX_MOMENTS];
     let mut heights = [zero; MAX_COEFFICIENTS];
-    let (mut squared, mut vote, mut du, mut dv) = (zero, zero, zero, zero);
+    let (mut squared, mut vote, mut whole, mut du, mut dv) = (zero, zero, zero, zero, zero);
     for block in 0..near.blocks() {
         let (p, ih2) = near.block(simd, block);
         let d = p.minus(r);
         let (u, v, z) = (d.dot(e1), d.dot(e2), d.dot(n) - t);
-        let w = weight.value(simd, (u * u + v * v + z * z) * ih2);
+        let facing = near.normals(simd, block).dot(n);
+        let mut w = weight.value(simd, (u * u + v * v + z * z) * ih2);
+        whole += w;
+        if A::VARIES {
+            w *= A::jet(simd, -facing)[0];
+        }
         squared += w * w;
-        vote += w * near.normals(simd, block).dot(n);
+        vote += w * facing;
         du += w * u;
         dv += w * v;
         // w u^a v^b, row by row: powers of u grow along a, powers of v along b.
@@ -161,6 +171,7 @@ fn sums_in<S: Simd, const D: usize>(
         drift: [sum(du), sum(dv)],
         squared: sum(squared),
         vote: sum(vote),
+        whole: sum(whole),
     }
 }
 

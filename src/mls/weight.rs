@@ -79,6 +79,52 @@ impl Weight for Gaussian {
     }
 }
 
+/// A factor phi(c) on a sample's weight by the cosine c between its normal and the plane's.
+pub trait Facing: Copy + Send + Sync + std::fmt::Debug + 'static {
+    /// Whether the factor can differ from one.
+    const VARIES: bool;
+
+    /// The factor and its first two derivatives with respect to c.
+    fn jet<S: Simd>(simd: S, c: Lanes<S>) -> [Lanes<S>; 3];
+}
+
+/// All samples weigh, whichever way they face: the definition of the paper.
+#[derive(Clone, Copy, Debug)]
+pub struct AnyWay;
+
+impl Facing for AnyWay {
+    const VARIES: bool = false;
+
+    #[inline(always)]
+    fn jet<S: Simd>(simd: S, _: Lanes<S>) -> [Lanes<S>; 3] {
+        let zero = Lanes::splat(simd, 0.0);
+        [Lanes::splat(simd, 1.0), zero, zero]
+    }
+}
+
+/// Samples that face the plane's way within 60 degrees weigh in full, those beyond 90 not at all, with two continuous
+/// derivatives between. So the two sides of a thin wall do not mix; where all normals in reach agree within 60
+/// degrees the surface is the one of the paper, to the last bit of its definition.
+#[derive(Clone, Copy, Debug)]
+pub struct SameWay;
+
+impl Facing for SameWay {
+    const VARIES: bool = true;
+
+    #[inline(always)]
+    fn jet<S: Simd>(simd: S, c: Lanes<S>) -> [Lanes<S>; 3] {
+        // cos 60 degrees; from zero, cos 90 degrees.
+        const FULL: f64 = 0.5;
+        let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
+        let x = (c * (1.0 / FULL)).max(zero).min(one);
+        let y = one - x;
+        let value = x * x * x * (x * (x * 6.0 - 15.0) + 10.0);
+        let first = x * x * (y * y) * (30.0 / FULL);
+        let second = x * y * (y - x) * (60.0 / (FULL * FULL));
+        [value, first, second]
+    }
+}
+
 /// exp(-x) for 0 <= x < 700, within 2 ulp; beyond, something finite or zero that the caller cuts.
 ///
 /// x = k ln 2 - f with |f| <= ln 2 / 2; the Taylor series of exp to degree 13 ends below 1e-17. Only
@@ -148,6 +194,24 @@ mod tests {
         }
         check(&Compact);
         check(&Gaussian::for_tolerance(1e-7));
+    }
+
+    #[test]
+    fn the_factor_of_facing_is_smooth_and_one_within_sixty_degrees() {
+        let at =
+            |c: f64| dispatch!(Level::new(), simd => SameWay::jet(simd, Lanes::splat(simd, c)).map(|l| l[0]));
+        for c in [0.5, 0.7, 1.0] {
+            assert_eq!(at(c), [1.0, 0.0, 0.0]);
+        }
+        for c in [0.0, -0.3, -1.0] {
+            assert_eq!(at(c), [0.0, 0.0, 0.0]);
+        }
+        for i in 1..50 {
+            let (c, d) = (0.01 * f64::from(i), 1e-5);
+            let ([v, d1, d2], [hi, ..], [lo, ..]) = (at(c), at(c + d), at(c - d));
+            assert!((d1 - (hi - lo) / (2.0 * d)).abs() < 1e-7);
+            assert!((d2 - (hi - 2.0 * v + lo) / (d * d)).abs() < 1e-3);
+        }
     }
 
     #[test]

@@ -20,6 +20,11 @@ pub const PRIMITIVE: Primitive = Primitive {
             Param::named("h", Kind::Size, "one width for all samples instead of the automatic ones"),
             Param::named("degree", Kind::Int(0, 4), "degree of the local polynomial (default 2)"),
             Param::named("kernel", Kind::Choice(&["compact", "gaussian"]), "the weight"),
+            Param::named(
+                "facing",
+                Kind::Choice(&["same", "any"]),
+                "which samples weigh: those that face the same way, or all",
+            ),
             Param::named("normals", Kind::Choice(&["file", "estimate"]), "where normals come from"),
             Param::named("tolerance", Kind::Positive, "relative to the size of the cloud (default 1e-9)"),
         ],
@@ -32,6 +37,7 @@ pub const PRIMITIVE: Primitive = Primitive {
 pub fn options(call: &Call) -> Options {
     Options {
         gaussian: call.text("kernel") == Some("gaussian"),
+        mixed: call.text("facing") == Some("any"),
         degree: call.number("degree").map_or(2, |d| d as usize),
         tolerance: call.number("tolerance").unwrap_or(tolerance::POINTS),
     }

@@ -55,13 +55,15 @@ pub struct Options {
     pub gaussian: bool,
     /// Degree of the polynomial, 0 to 4.
     pub degree: usize,
+    /// Whether samples weigh whichever way they face; else the sides of a thin wall are kept apart.
+    pub mixed: bool,
     /// Relative to the diagonal of the samples.
     pub tolerance: f64,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { gaussian: false, degree: 2, tolerance: tolerance::POINTS }
+        Options { gaussian: false, degree: 2, mixed: false, tolerance: tolerance::POINTS }
     }
 }
 
@@ -73,6 +75,7 @@ pub struct PointSet {
     samples: Arc<Hierarchy>,
     kernel: Kernel,
     degree: usize,
+    mixed: bool,
     /// A bound of the error along the normal, world length.
     tolerance: f64,
     bounds: Aabb,
@@ -100,6 +103,7 @@ impl PointSet {
             samples: Arc::new(hierarchy),
             kernel,
             degree: options.degree,
+            mixed: options.mixed,
             tolerance: options.tolerance * diagonal,
             bounds,
             body: Body::Sheet,

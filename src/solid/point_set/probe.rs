@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::hierarchy::{Hierarchy, Reach};
 use super::{Kernel, PointSet};
 use crate::geom::Ray;
-use crate::mls::{Evaluator, Neighbours, Sample, Stray, Weight};
+use crate::mls::{AnyWay, Evaluator, Facing, Guess, Neighbours, SameWay, Sample, Stray, Weight};
 
 /// F at a place of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,11 +48,19 @@ impl PointSet {
         let at = line.at(s);
         let sample = nearest(&self.samples, at, s, spheres);
         let width = self.samples.widths[sample];
-        let limit = if self.near_rim(sample) { self.kernel.edge() } else { f64::INFINITY };
         let field = self.field_near(at, sample, room);
         let stray = field.is_err();
-        let f = field.ok().filter(|f| f.drift <= limit).map(|f| [f.value, f.gradient.dot(line.dir)]);
+        let f = field.ok().filter(|f| !self.has_ended(sample, f));
+        let f = f.map(|f| [f.value, f.gradient.dot(line.dir)]);
         Probe { s, width, f, stray }
+    }
+
+    /// Whether the samples have ended at a point: beyond the rim of a hole that is capped, and beyond the edge of a
+    /// wall so thin and sharp that its far side was left out. There the polynomial only extrapolates.
+    fn has_ended(&self, sample: usize, field: &Sample) -> bool {
+        // Where less than this share of the weight faces another way nothing has been left out.
+        const WHOLE: f64 = 0.99;
+        (field.kept < WHOLE || self.near_rim(sample)) && self.kernel.edge() < field.drift
     }
 
     /// grad F at arc length `s`.
@@ -70,40 +78,54 @@ impl PointSet {
 
     /// F at a point for which a sample is known whose trust sphere holds it.
     pub(super) fn field_near(&self, at: DVec3, sample: usize, room: &mut Room) -> Result<Sample, Stray> {
-        let degree = self.degree;
         match self.kernel {
-            Kernel::Compact(weight) => self.field(Evaluator { weight, degree }, at, sample, room),
-            Kernel::Gaussian(weight) => self.field(Evaluator { weight, degree }, at, sample, room),
+            Kernel::Compact(weight) => self.field_facing(weight, at, sample, room),
+            Kernel::Gaussian(weight) => self.field_facing(weight, at, sample, room),
         }
     }
 
-    fn field<W: Weight>(
+    fn field_facing<W: Weight>(
         &self,
-        evaluator: Evaluator<W>,
+        weight: W,
+        at: DVec3,
+        sample: usize,
+        room: &mut Room,
+    ) -> Result<Sample, Stray> {
+        let degree = self.degree;
+        if self.mixed {
+            self.field(&Evaluator { weight, facing: AnyWay, degree }, at, sample, room)
+        } else {
+            self.field(&Evaluator { weight, facing: SameWay, degree }, at, sample, room)
+        }
+    }
+
+    fn field<W: Weight, A: Facing>(
+        &self,
+        evaluator: &Evaluator<W, A>,
         at: DVec3,
         sample: usize,
         room: &mut Room,
     ) -> Result<Sample, Stray> {
         room.projections += 1;
-        let width = self.samples.widths[sample];
         let support = evaluator.weight.support();
         // The foot on the plane of the nearest sample: a function of the point alone.
-        let (p, n) = (self.samples.points[sample], self.samples.normals[sample]);
-        let foot = at - n * n.dot(at - p);
+        let (p, outward) = (self.samples.points[sample], self.samples.normals[sample]);
+        let width = self.samples.widths[sample];
+        let guess = Guess { foot: at - outward * outward.dot(at - p), outward, width };
         if room.ready {
-            let answer = evaluator.sample(&room.near, at, foot, width);
+            let answer = evaluator.sample(&room.near, at, &guess);
             if answer != Err(Stray::OutOfReach) {
                 return answer;
             }
         }
         room.ready = true;
-        self.samples.gather(foot, width, REACH, support, &mut room.near);
-        let answer = evaluator.sample(&room.near, at, foot, width);
+        self.samples.gather(guess.foot, width, REACH, support, &mut room.near);
+        let answer = evaluator.sample(&room.near, at, &guess);
         if answer != Err(Stray::OutOfReach) {
             return answer;
         }
-        self.samples.gather(foot, width, FAR_REACH, support, &mut room.near);
-        match evaluator.sample(&room.near, at, foot, width) {
+        self.samples.gather(guess.foot, width, FAR_REACH, support, &mut room.near);
+        match evaluator.sample(&room.near, at, &guess) {
             Err(Stray::OutOfReach) => Err(Stray::Outside),
             answer => answer,
         }
