@@ -67,6 +67,7 @@ impl PointSet {
             if !all.is_empty() {
                 self.scan(line, all, out);
             }
+            out.iter_mut().for_each(|cap| cap.repair = true);
         }
         mend(gap, ends, out);
     }

@@ -123,22 +123,21 @@ impl PointSet {
         let facing = if crossing.entering { -unit.dir } else { unit.dir };
         let s = (crossing.t - line.t0) / line.per_s;
         let at = unit.at(s);
-        match crossing.part {
-            part::CAP => {
-                let (_, gradient) = self.winding().value_and_gradient(at);
-                (-gradient).try_normalize().unwrap_or(facing)
-            }
-            part::SURFACE => {
-                let band = line.bands.partition_point(|b| b.range.hi < s).min(line.bands.len().max(1) - 1);
-                let spheres =
-                    line.bands.get(band).map_or(&[][..], |b| &line.reaches[b.spheres[0]..b.spheres[1]]);
-                let before = line.room.projections;
-                let gradient = self.gradient_at(&unit, s, spheres, &mut line.room);
-                counts.projections += line.room.projections - before;
-                gradient.and_then(DVec3::try_normalize).unwrap_or(facing)
-            }
-            _ => facing,
+        if crossing.part == part::CAP {
+            let (_, gradient) = self.winding().value_and_gradient(at);
+            return (-gradient).try_normalize().unwrap_or(facing);
         }
+        let band = line.bands.partition_point(|b| b.range.hi < s).min(line.bands.len().max(1) - 1);
+        let spheres = line.bands.get(band).map_or(&[][..], |b| &line.reaches[b.spheres[0]..b.spheres[1]]);
+        if crossing.part == part::WALL {
+            // A wall stands where definitions disagree: the nearest sample tells best how the surface lies.
+            let normal = self.sample_normal(&unit, s, spheres);
+            return if 0.0 < normal.dot(facing) { normal } else { facing };
+        }
+        let before = line.room.projections;
+        let gradient = self.gradient_at(&unit, s, spheres, &mut line.room);
+        counts.projections += line.room.projections - before;
+        gradient.and_then(DVec3::try_normalize).unwrap_or(facing)
     }
 
     /// This thread's knowledge of the line, begun afresh where the line is another.

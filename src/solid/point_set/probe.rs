@@ -63,6 +63,11 @@ impl PointSet {
         (field.kept < WHOLE || self.near_rim(sample)) && self.kernel.edge() < field.drift
     }
 
+    /// The normal of the sample nearest to arc length `s`.
+    pub(super) fn sample_normal(&self, line: &Ray, s: f64, spheres: &[Reach]) -> DVec3 {
+        self.samples.normals[nearest(&self.samples, line.at(s), s, spheres)]
+    }
+
     /// grad F at arc length `s`.
     pub(super) fn gradient_at(
         &self,
