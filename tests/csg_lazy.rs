@@ -99,3 +99,13 @@ fn a_chain_of_ten_thousand_operators_is_no_trouble() {
     assert_eq!(out.len(), 1);
     assert_eq!(out[0].interval(), Interval::new(0.0, 10_000.0));
 }
+
+/// A leaf that is nothing has an empty box, which no ray meets, whatever its direction.
+#[test]
+fn a_leaf_that_is_nothing_is_never_asked() {
+    let (nothing, asked) = placed(Line::new(&[]), 0);
+    let object = Object::new(vec![nothing], &Expr::Leaf(0));
+    let ray = pss::geom::Ray::new(glam::DVec3::ZERO, glam::DVec3::ONE);
+    assert!(!object.any(&ray, Interval::ALL, &mut Scratch::default()));
+    assert_eq!(asked.asked(), 0);
+}

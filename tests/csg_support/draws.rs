@@ -19,7 +19,7 @@ impl Draws {
 
     /// One of `0..n`.
     pub fn below(&mut self, n: usize) -> usize {
-        ((self.bits() >> 32) * n as u64 >> 32) as usize
+        (((self.bits() >> 32) * n as u64) >> 32) as usize
     }
 
     /// In [0, 1).
