@@ -48,7 +48,8 @@ impl<'a> Cleaner<'a> {
     fn tau(&self, a: &Change, b: &Change) -> f64 {
         let ray = self.sweep.ray;
         let leaves = [a, b].map(|c| &self.sweep.tree.leaves()[c.leaf as usize]);
-        let scale = ray.origin.length().max(ray.at(a.t).length());
+        // Of the two points the nearer: a ray and its reverse find the same thin, and none past the horizon.
+        let scale = ray.origin.length().max(ray.at(a.t).length().min(ray.at(b.t).length()));
         let scale = scale.max(leaves[0].scale()).max(leaves[1].scale());
         let error = |i: usize, c: &Change| c.crossing.shift * leaves[i].place.stretch;
         tolerance::cleanup(scale) + error(0, a) + error(1, b)

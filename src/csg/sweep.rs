@@ -26,6 +26,8 @@ pub(super) struct Change {
     pub crossing: Crossing,
     /// Whether the ray goes into the object.
     pub entering: bool,
+    /// Whether others may cross at the same t.
+    pub tied: bool,
 }
 
 /// What happens to a leaf at some t.
@@ -87,6 +89,8 @@ impl Room {
 /// A sweep in progress.
 pub(super) struct Sweep<'a> {
     pub tree: &'a Tree,
+    /// [`State::outside`] of the tree.
+    pub outside: &'a State,
     pub ray: &'a Ray,
     pub range: Interval,
     pub room: &'a mut Room,
@@ -98,10 +102,10 @@ pub(super) struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// Meets the leaves' boxes. `outside` is [`State::outside`] of the tree.
+    /// Meets the leaves' boxes.
     pub fn new(
         tree: &'a Tree,
-        outside: &State,
+        outside: &'a State,
         ray: &'a Ray,
         range: Interval,
         room: &'a mut Room,
@@ -113,7 +117,7 @@ impl<'a> Sweep<'a> {
         room.heap.clear();
         room.made = 0;
         for (i, leaf) in tree.leaves().iter().enumerate() {
-            let inside = leaf.bounds.clip(ray).intersect(range);
+            let inside = leaf.met(ray).intersect(range);
             if !inside.is_empty() {
                 room.met.push((i as u32, inside));
                 room.push(inside.lo, i as u32, Event::Open);
@@ -122,7 +126,7 @@ impl<'a> Sweep<'a> {
                 }
             }
         }
-        Sweep { tree, ray, range, room, scratch, at: range.lo, inside: false, begun: false }
+        Sweep { tree, outside, ray, range, room, scratch, at: range.lo, inside: false, begun: false }
     }
 
     /// Whether the ray is inside the object where the range begins.
@@ -143,21 +147,25 @@ impl<'a> Sweep<'a> {
                 break;
             }
             self.at = first.t;
-            let toggled = self.take_group(first.t);
-            self.resolve();
+            let (toggled, tied) = self.take_group(first.t);
+            let found = self.resolve();
             let inside = self.room.state.root(self.tree) == Truth::Yes;
-            if inside != self.inside {
+            // Truth changes where something crosses. A leaf that turns out to be inside where the ray enters its box
+            // has crossed before: its box is too small. Its crossing is then late, but not lost.
+            if inside != self.inside
+                && let Some((leaf, crossing)) = toggled.or(found)
+            {
                 self.inside = inside;
-                if let Some((leaf, crossing)) = toggled {
-                    return Some(Change { t: first.t, leaf, crossing, entering: inside });
-                }
+                // A leaf asked only now may have crossed here too.
+                let tied = tied || found.is_some();
+                return Some(Change { t: first.t, leaf, crossing, entering: inside, tied });
             }
         }
         None
     }
 
-    /// Applies all events at one t; returns the crossing of the leaf with the smallest key.
-    fn take_group(&mut self, t: f64) -> Option<(u32, Crossing)> {
+    /// Applies all events at one t; returns the crossing of the leaf with the smallest key, and whether others cross.
+    fn take_group(&mut self, t: f64) -> (Option<(u32, Crossing)>, bool) {
         let mut best: Option<(u32, Crossing)> = None;
         let mut crossings = 0;
         while let Some(Reverse(entry)) = self.room.heap.peek().copied() {
@@ -172,8 +180,12 @@ impl<'a> Sweep<'a> {
                     self.room.open.push(leaf);
                 }
                 Event::Far => {
-                    self.room.state.set(self.tree, i, Truth::No);
+                    // A leaf that was asked ends at its own crossing.
+                    let open = self.room.open.len();
                     self.room.open.retain(|l| *l != leaf);
+                    if self.room.open.len() < open {
+                        self.room.state.set(self.tree, i, Truth::No);
+                    }
                 }
                 Event::Cross(crossing) => {
                     self.room.state.set(self.tree, i, Truth::known(crossing.entering));
@@ -185,31 +197,34 @@ impl<'a> Sweep<'a> {
                 }
             }
         }
-        self.scratch.counts.ties += u64::from(1 < crossings);
-        best
+        let tied = 1 < crossings;
+        self.scratch.counts.ties += u64::from(tied);
+        (best, tied)
     }
 
-    /// Asks leaves until the object's truth just after `at` is known.
-    fn resolve(&mut self) {
+    /// Asks leaves until the object's truth just after `at` is known; returns the last crossing up to there.
+    fn resolve(&mut self) -> Option<(u32, Crossing)> {
+        let mut last = None;
         while self.room.state.root(self.tree) == Truth::Open {
             let (tree, state) = (self.tree, &self.room.state);
             let cost = |l: &&u32| (tree.leaves()[**l as usize].solid.is_costly(), **l);
             let useful = self.room.open.iter().filter(|l| state.matters(tree, **l as usize));
-            let Some(&leaf) = useful.min_by_key(cost) else { return };
-            self.ask(leaf);
+            let Some(&leaf) = useful.min_by_key(cost) else { break };
+            last = self.ask(leaf).map(|c| (leaf, c)).or(last);
         }
+        last
     }
 
-    /// Asks an open leaf from `at` on.
-    fn ask(&mut self, leaf: u32) {
+    /// Asks an open leaf from `at` on; returns its last crossing up to there, if it was asked for one.
+    fn ask(&mut self, leaf: u32) -> Option<Crossing> {
         let met = self.room.met.iter().find(|m| m.0 == leaf);
-        let Some(end) = met.map(|m| m.1.hi) else { return };
+        let end = met.map_or(self.range.hi, |m| m.1.hi);
         let answer = self.query(leaf, Interval::new(self.at, end));
-        let mut inside = answer.inside;
+        let (mut inside, mut last) = (answer.inside, None);
         let fresh = std::mem::take(&mut self.room.fresh);
         for crossing in &fresh {
             if crossing.t <= self.at {
-                inside = crossing.entering;
+                (inside, last) = (crossing.entering, Some(*crossing));
             } else if crossing.t <= answer.range.hi.min(self.range.hi) {
                 self.room.push(crossing.t, leaf, Event::Cross(*crossing));
             }
@@ -220,6 +235,7 @@ impl<'a> Sweep<'a> {
         }
         self.room.open.retain(|l| *l != leaf);
         self.room.state.set(self.tree, leaf as usize, Truth::known(inside));
+        last
     }
 
     /// A leaf's crossings in a range, into `room.fresh`.
@@ -229,6 +245,19 @@ impl<'a> Sweep<'a> {
         let ray = leaf.place.ray_to_local(self.ray);
         self.room.fresh.clear();
         leaf.solid.crossings(&ray, range, self.scratch, &mut self.room.fresh)
+    }
+
+    /// The state just after `t` of all leaves that the ray meets in its range.
+    pub fn state_at(&mut self, t: f64) -> State {
+        let mut state = self.outside.clone();
+        for i in 0..self.room.met.len() {
+            let leaf = self.room.met[i].0;
+            let answer = self.query(leaf, Interval::new(t, t));
+            let last = self.room.fresh.iter().rfind(|c| c.t <= t);
+            let inside = last.map_or(answer.inside, |c| c.entering);
+            state.set(self.tree, leaf as usize, Truth::known(inside));
+        }
+        state
     }
 
     /// The outward unit normal of a leaf, world frame.

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::geom::{Aabb, Placement};
+use crate::geom::{Aabb, Interval, Placement, Ray, tolerance};
 use crate::solid::Solid;
 
 /// A solid, placed, as an operand.
@@ -41,6 +41,14 @@ impl Leaf {
             0.0
         };
         reach.max(self.place.offset())
+    }
+
+    /// The part of a ray's line that can meet the leaf. Box and crossings are rounded apart, each by as much as two
+    /// faces that were one; so the box is grown by what the clean-up takes for nothing, and more where the frame
+    /// is skewed.
+    pub fn met(&self, ray: &Ray) -> Interval {
+        let scale = self.scale().max(ray.origin.length());
+        self.bounds.inflated(tolerance::cleanup(scale) * self.place.condition).clip(ray)
     }
 
     /// Who owns a face that several leaves share: the smallest key.

@@ -102,6 +102,32 @@ impl State {
         })
     }
 
+    /// Whether a leaf, and all nodes above one of its uses, pass the test; nothing may be open.
+    fn all_above(&self, tree: &Tree, leaf: usize, test: impl Fn(&dyn Fn(&State) -> Truth) -> bool) -> bool {
+        let passes = |mut node: usize| {
+            loop {
+                if !test(&|state| state.node(tree, node)) {
+                    return false;
+                }
+                match tree.nodes[node].up {
+                    Some(up) => node = up.node as usize,
+                    None => return true,
+                }
+            }
+        };
+        test(&|state| state.leaves[leaf]) && tree.ups[leaf].iter().any(|up| passes(up.node as usize))
+    }
+
+    /// Whether a leaf and all nodes above one of its uses are inside.
+    pub fn fills(&self, tree: &Tree, leaf: usize) -> bool {
+        self.all_above(tree, leaf, |truth| truth(self) == Truth::Yes)
+    }
+
+    /// Whether a leaf and all nodes above one of its uses differ from another state.
+    pub fn differs(&self, before: &State, tree: &Tree, leaf: usize) -> bool {
+        self.all_above(tree, leaf, |truth| truth(self) != truth(before))
+    }
+
     /// Sets a leaf.
     pub fn set(&mut self, tree: &Tree, leaf: usize, truth: Truth) {
         let before = std::mem::replace(&mut self.leaves[leaf], truth);

@@ -121,8 +121,8 @@ impl Aabb {
                 }
                 continue;
             }
-            let (a, b) = ((lo - o) / d, (hi - o) / d);
-            range = range.intersect(Interval::new(a.min(b), a.max(b)));
+            let (near, far) = if 0.0 < d { (lo, hi) } else { (hi, lo) };
+            range = range.intersect(Interval::new((near - o) / d, (far - o) / d));
         }
         // Each end carries at most three roundings (subtraction, division, and the box's own corner).
         let pad = 8.0 * f64::EPSILON;

@@ -16,6 +16,8 @@ pub struct Placement {
     /// A bound on how much a local length can grow (the Frobenius norm of the linear part over sqrt 3 is its
     /// mean, the norm itself is a bound); for a rotation and uniform scaling the scale itself.
     pub stretch: f64,
+    /// By how much rounding errors can grow on the way there and back: 1 for a rotation and uniform scaling.
+    pub condition: f64,
 }
 
 impl Placement {
@@ -25,6 +27,7 @@ impl Placement {
         local_from_world: DAffine3::IDENTITY,
         normals: DMat3::IDENTITY,
         stretch: 1.0,
+        condition: 1.0,
     };
 
     /// A placement; `None` where the map has no finite inverse or its condition exceeds 1e12, past which
@@ -50,6 +53,7 @@ impl Placement {
             local_from_world,
             normals: local_from_world.matrix3.transpose(),
             stretch,
+            condition: condition.max(1.0),
         })
     }
 

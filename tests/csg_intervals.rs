@@ -1,0 +1,256 @@
+//! The interval algebra without geometry: leaves that are sets of integer intervals of a line, every operator against
+//! membership of unit cells, exactly. Case names are those of the stress plan, section A.
+
+mod csg_support;
+
+use csg_support::draws::Draws;
+use csg_support::line::{self, Line, axis};
+use pss::csg::{Expr, Leaf, Object, Scratch, Span, Spans};
+use pss::geom::{Aabb, Interval};
+use std::sync::Arc;
+
+const TRIALS: u64 = 10_000;
+
+/// Spans as pairs of numbers.
+type List = Vec<(f64, f64)>;
+
+fn list(object: &Object, scratch: &mut Scratch) -> List {
+    let mut out = Spans::new();
+    object.spans(&axis(), Interval::ALL, scratch, &mut out);
+    out.iter().map(|s: &Span| (s.interval().lo, s.interval().hi)).collect()
+}
+
+fn leaves(lines: Vec<Line>) -> Vec<Leaf> {
+    lines.into_iter().enumerate().map(|(i, l)| line::leaf(l, i as u64)).collect()
+}
+
+fn inside(line: &Line, x: f64) -> bool {
+    (line.ends.iter().filter(|e| **e < x).count() % 2 == 1) != line.inside
+}
+
+/// The spans of a predicate, by its value in every unit cell and beyond.
+fn cells(holds: impl Fn(f64) -> bool) -> List {
+    let mut spans: List = Vec::new();
+    for cell in -1..=64 {
+        let lo = if cell == -1 { f64::NEG_INFINITY } else { f64::from(cell) };
+        let hi = if cell == 64 { f64::INFINITY } else { f64::from(cell + 1) };
+        if holds(f64::from(cell) + 0.5) {
+            match spans.last_mut() {
+                Some(last) if last.1 == lo => last.1 = hi,
+                _ => spans.push((lo, hi)),
+            }
+        }
+    }
+    spans
+}
+
+fn leaf(i: u32) -> Expr {
+    Expr::Leaf(i)
+}
+
+fn not(e: Expr) -> Expr {
+    Expr::Not(Box::new(e))
+}
+
+/// A1, A2, A6, A12: one set with itself, and complements; unbounded sets are among them.
+#[test]
+fn a1_a2_a6_a12_a_set_with_itself() {
+    let mut scratch = Scratch::default();
+    let mut draws = Draws::new(1);
+    for _ in 0..TRIALS {
+        let a = line::random(&mut draws, true);
+        let want = cells(|x| inside(&a, x));
+        let leaves = leaves(vec![a]);
+        let mut of = |expr: Expr| list(&Object::new(leaves.clone(), &expr), &mut scratch);
+        let none = List::new();
+        assert_eq!(of(Expr::And(vec![leaf(0), not(leaf(0))])), none, "A - A");
+        assert_eq!(of(Expr::Or(vec![leaf(0), leaf(0)])), want, "A | A");
+        assert_eq!(of(Expr::And(vec![leaf(0), leaf(0)])), want, "A & A");
+        assert_eq!(of(not(not(leaf(0)))), want, "!!A");
+        let copies = 1 + draws.below(6);
+        let xor = of(Expr::Xor(vec![leaf(0); copies]));
+        assert_eq!(xor, if copies % 2 == 1 { want } else { none }, "{copies} copies in ^");
+    }
+}
+
+/// A3, A5, A11 and all else that a truth table says: two to four sets in every operator and nested pairs of them.
+#[test]
+fn a3_a5_all_pairs_of_operators_are_their_truth_tables() {
+    let mut scratch = Scratch::default();
+    let mut draws = Draws::new(2);
+    type Op = (fn(Vec<Expr>) -> Expr, fn(bool, bool) -> bool);
+    let ops: [Op; 4] = [
+        (Expr::Or, |a, b| a | b),
+        (Expr::And, |a, b| a & b),
+        (Expr::Xor, |a, b| a ^ b),
+        (
+            |mut l| {
+                let b = not(l.pop().unwrap());
+                Expr::And(vec![l.pop().unwrap(), b])
+            },
+            |a, b| a & !b,
+        ),
+    ];
+    for trial in 0..TRIALS {
+        let lines: Vec<Line> = (0..3).map(|_| line::random(&mut draws, trial % 2 == 0)).collect();
+        let (outer, inner) = (ops[draws.below(4)], ops[draws.below(4)]);
+        let left = draws.chance(0.5);
+        let want = cells(|x| {
+            let [a, b, c] = [0, 1, 2].map(|i: usize| inside(&lines[i], x));
+            if left { outer.1(inner.1(a, b), c) } else { outer.1(a, inner.1(b, c)) }
+        });
+        let expr = if left {
+            outer.0(vec![inner.0(vec![leaf(0), leaf(1)]), leaf(2)])
+        } else {
+            outer.0(vec![leaf(0), inner.0(vec![leaf(1), leaf(2)])])
+        };
+        let leaves = leaves(lines);
+        assert_eq!(list(&Object::new(leaves, &expr), &mut scratch), want, "{expr:?}");
+    }
+}
+
+/// A4: three to thirty-two operands, any order, any brackets.
+#[test]
+fn a4_many_operands_in_any_brackets() {
+    let mut scratch = Scratch::default();
+    let mut draws = Draws::new(3);
+    for trial in 0..TRIALS {
+        let count = 3 + draws.below(30);
+        let lines: Vec<Line> = (0..count).map(|_| line::random(&mut draws, false)).collect();
+        let node: fn(Vec<Expr>) -> Expr = [Expr::Or, Expr::And, Expr::Xor][(trial % 3) as usize];
+        let want = cells(|x| {
+            let in_it = lines.iter().filter(|l| inside(l, x)).count();
+            [0 < in_it, in_it == count, in_it % 2 == 1][(trial % 3) as usize]
+        });
+        let mut parts: Vec<Expr> = (0..count as u32).map(leaf).collect();
+        draws.shuffle(&mut parts);
+        while 1 < parts.len() {
+            let at = draws.below(parts.len() - 1);
+            let pair = parts.drain(at..at + 2).collect();
+            parts.insert(at, node(pair));
+        }
+        let object = Object::new(leaves(lines), &parts[0]);
+        assert_eq!(list(&object, &mut scratch), want);
+    }
+}
+
+/// A7 and A8: the matrix of positions by operators, both orders; what touches leaves neither film nor wall.
+#[test]
+fn a7_a8_the_matrix_of_positions() {
+    let mut scratch = Scratch::default();
+    let pairs: [(&[f64], &[f64]); 11] = [
+        (&[1.0, 3.0], &[5.0, 7.0]),
+        (&[1.0, 3.0], &[3.0, 5.0]),
+        (&[1.0, 4.0], &[3.0, 5.0]),
+        (&[1.0, 7.0], &[3.0, 5.0]),
+        (&[3.0, 5.0], &[1.0, 7.0]),
+        (&[1.0, 3.0], &[1.0, 3.0]),
+        (&[1.0, 3.0], &[1.0, 5.0]),
+        (&[1.0, 5.0], &[3.0, 5.0]),
+        (&[1.0, 5.0], &[]),
+        (&[1.0, 5.0], &[3.0, 3.0]),
+        (&[3.0, 3.0], &[]),
+    ];
+    for (a, b) in pairs {
+        for (a, b) in [(a, b), (b, a)] {
+            let [la, lb] = [a, b].map(Line::new);
+            let truth = |op: fn(bool, bool) -> bool| cells(|x| op(inside(&la, x), inside(&lb, x)));
+            let want = [truth(|a, b| a | b), truth(|a, b| a & b), truth(|a, b| a & !b), truth(|a, b| a ^ b)];
+            let both = || vec![leaf(0), leaf(1)];
+            let minus = Expr::And(vec![leaf(0), not(leaf(1))]);
+            let exprs = [Expr::Or(both()), Expr::And(both()), minus, Expr::Xor(both())];
+            for (expr, want) in exprs.iter().zip(want) {
+                let object = Object::new(leaves(vec![Line::new(a), Line::new(b)]), expr);
+                assert_eq!(list(&object, &mut scratch), want, "{a:?} {b:?} {expr:?}");
+            }
+        }
+    }
+}
+
+/// A9 and A14: what is thinner than tau goes, what is thicker stays, in both orders.
+#[test]
+fn a9_a14_slits_and_films_up_to_tau_vanish() {
+    let mut scratch = Scratch::default();
+    for j in -8..=8 {
+        // All lengths in play are at most 4, so tau is 16 eps 4 for leaves that reach to 4.
+        let tau = 64.0 * f64::EPSILON;
+        let width = tau * 2f64.powi(j);
+        let [a, b] = [[1.0, 3.0], [3.0 + width, 4.0]];
+        let slit = if j <= 0 { vec![(1.0, 4.0)] } else { vec![(1.0, 3.0), (3.0 + width, 4.0)] };
+        let film = [1.0, 3.0 + width];
+        let film_left: List = if j <= 0 { vec![] } else { vec![(3.0, 3.0 + width)] };
+        let reach = [2.0, 4.0];
+        for order in [[0u32, 1], [1, 0]] {
+            let both = order.map(leaf).to_vec();
+            let object = Object::new(leaves(vec![Line::new(&a), Line::new(&b)]), &Expr::Or(both));
+            let have = list(&object, &mut scratch);
+            assert_eq!(have.len(), slit.len(), "j {j} {have:?}");
+            let minus = Expr::And(vec![leaf(0), not(leaf(1)), Expr::Or(vec![leaf(2), leaf(0)])]);
+            let lines = vec![Line::new(&film), Line::new(&[1.0, 3.0]), Line::new(&reach)];
+            let have = list(&Object::new(leaves(lines), &minus), &mut scratch);
+            // The film's own leaf reaches only to 3 + width: tau is three quarters.
+            let kept = 0.75 * tau < width;
+            assert_eq!(have, if kept { vec![(3.0, 3.0 + width)] } else { film_left.clone() }, "j {j}");
+        }
+    }
+}
+
+/// A10: a chain of a thousand slits of 0.9 tau is one span with its own two ends.
+#[test]
+fn a10_a_chain_of_slits_is_one_span() {
+    let mut scratch = Scratch::default();
+    let (step, slit) = (1.0, 0.9 * 16.0 * f64::EPSILON * 1000.0);
+    let lines =
+        (0..1000).map(|i| Line::new(&[f64::from(i) * step, f64::from(i + 1) * step - slit])).collect();
+    let expr = Expr::Or((0..1000).map(leaf).collect());
+    // Only the farther half is thick enough in play for its slits: ask from there.
+    let object = Object::new(leaves(lines), &expr);
+    let spans: List = list(&object, &mut scratch).into_iter().filter(|s| 999.5 < s.1).collect();
+    assert_eq!(spans.len(), 1);
+    assert_eq!(spans[0].1, 1000.0 - slit);
+    assert!(spans[0].0 <= 901.0, "{spans:?}");
+}
+
+/// A13: a leaf whose box is too small, or which answers no numbers, inverts nothing and hangs nothing.
+#[test]
+fn a13_a_leaf_that_lies_cannot_invert_what_follows() {
+    #[derive(Debug)]
+    struct Liar(Line, Aabb);
+    impl pss::solid::Solid for Liar {
+        fn bounds(&self) -> Aabb {
+            self.1
+        }
+        fn crossings(
+            &self,
+            ray: &pss::geom::Ray,
+            range: Interval,
+            scratch: &mut pss::solid::Scratch,
+            out: &mut Vec<pss::solid::Crossing>,
+        ) -> pss::solid::Answer {
+            self.0.crossings(ray, range, scratch, out)
+        }
+        fn normal(
+            &self,
+            ray: &pss::geom::Ray,
+            c: &pss::solid::Crossing,
+            scratch: &mut pss::solid::Scratch,
+        ) -> glam::DVec3 {
+            self.0.normal(ray, c, scratch)
+        }
+    }
+    let mut scratch = Scratch::default();
+    for (lo, hi) in [(1.5, 2.5), (1.5, 9.0), (0.0, 2.5)] {
+        let small = Aabb { min: glam::dvec3(lo, -1.0, -1.0), max: glam::dvec3(hi, 1.0, 1.0) };
+        let liar = Liar(Line::new(&[1.0, 3.0]), small);
+        let place = pss::geom::Placement::IDENTITY;
+        let mut all = vec![Leaf::new(Arc::new(liar), place), line::leaf(Line::new(&[5.0, 6.0]), 1)];
+        all[0].rank = 0;
+        let have = list(&Object::new(all, &Expr::Or(vec![leaf(0), leaf(1)])), &mut scratch);
+        assert_eq!(have.len(), 2, "{have:?}");
+        assert_eq!((have[0].1, have[1]), (3.0, (5.0, 6.0)), "{have:?}");
+    }
+    let nan = Line::new(&[f64::NAN, f64::NAN]);
+    let liar = Liar(nan, Aabb { min: glam::DVec3::NEG_ONE, max: glam::DVec3::ONE });
+    let leaves = vec![Leaf::new(Arc::new(liar), pss::geom::Placement::IDENTITY)];
+    assert_eq!(list(&Object::new(leaves, &leaf(0)), &mut scratch), vec![]);
+}

@@ -1,0 +1,139 @@
+//! Random objects: leaves that like to share faces, expressions over them, and rays that like to run in faces.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+use pss::csg::{Expr, Leaf};
+use pss::geom::{Aabb, Placement, Ray};
+use pss::solid::Solid;
+use pss::solid::block::Block;
+use pss::solid::cylinder::Cylinder;
+use pss::solid::half_space::HalfSpace;
+use pss::solid::sphere::Sphere;
+
+use super::draws::Draws;
+
+/// A random leaf. `earlier` holds the coordinates already in play.
+pub fn leaf(draws: &mut Draws, earlier: &mut Vec<f64>, rank: u64) -> Leaf {
+    let place = placement(draws, earlier);
+    let mut leaf = Leaf::new(solid(draws, earlier), place);
+    leaf.rank = rank;
+    leaf.material = draws.chance(0.5).then(|| draws.below(4) as u32);
+    leaf.cutter = draws.chance(0.3);
+    leaf
+}
+
+fn solid(draws: &mut Draws, earlier: &mut Vec<f64>) -> Arc<dyn Solid> {
+    let radius = |d: &mut Draws, e: &mut Vec<f64>| d.coordinate(e).abs().max(1e-3);
+    match draws.below(4) {
+        0 => {
+            let center = draws.vector(earlier);
+            let r = radius(draws, earlier);
+            let radii = if draws.chance(0.7) { DVec3::splat(r) } else { r * DVec3::new(1.0, 2.0, 0.5) };
+            Arc::new(Sphere { center, radii })
+        }
+        1 => {
+            let (from, mut to) = (draws.vector(earlier), draws.vector(earlier));
+            if draws.chance(0.6) {
+                (to.x, to.y) = (from.x, from.y);
+            }
+            Arc::new(Cylinder::new(radius(draws, earlier), from, to))
+        }
+        2 => {
+            let normal = if draws.chance(0.7) { draws.pick(&DVec3::AXES) } else { draws.direction() };
+            Arc::new(HalfSpace { normal, offset: draws.coordinate(earlier) })
+        }
+        _ => {
+            let (a, b) = (draws.vector(earlier), draws.vector(earlier));
+            Arc::new(Block(Aabb { min: a.min(b), max: a.max(b) }))
+        }
+    }
+}
+
+fn placement(draws: &mut Draws, earlier: &mut Vec<f64>) -> Placement {
+    let mut map = DAffine3::IDENTITY;
+    for _ in 0..draws.below(4) {
+        let step = match draws.below(5) {
+            0 => DAffine3::from_translation(draws.vector(earlier)),
+            1 => DAffine3::from_axis_angle(draws.pick(&DVec3::AXES), draws.pick(&[0.5, 1.0, 1.5]) * PI),
+            2 => DAffine3::from_axis_angle(draws.direction(), draws.between(0.0, PI)),
+            3 => DAffine3::from_scale(draws.pick(&[DVec3::new(-1.0, 1.0, 1.0), DVec3::new(1.0, 1.0, -1.0)])),
+            _ => DAffine3::from_scale(DVec3::new(draws.pick(&[1.0, 3.0]), 1.0, draws.pick(&[1.0, 0.25]))),
+        };
+        map = step * map;
+    }
+    Placement::new(map).unwrap_or(Placement::IDENTITY)
+}
+
+/// A random expression over `leaves` leaves, some used more than once.
+pub fn expr(draws: &mut Draws, leaves: usize, depth: usize) -> Expr {
+    if depth == 0 || draws.chance(0.15) {
+        return Expr::Leaf(draws.below(leaves) as u32);
+    }
+    if draws.chance(0.15) {
+        return Expr::Not(Box::new(expr(draws, leaves, depth - 1)));
+    }
+    let list = (0..1 + draws.below(3)).map(|_| expr(draws, leaves, depth - 1)).collect();
+    match draws.below(5) {
+        0 | 1 => Expr::Or(list),
+        2 => Expr::And(list),
+        3 => Expr::Xor(list),
+        _ => {
+            let base = expr(draws, leaves, depth - 1);
+            Expr::And(vec![base, Expr::Not(Box::new(Expr::Or(list)))])
+        }
+    }
+}
+
+/// A ray: along an axis, along small integers, or any; from coordinates in play.
+pub fn ray(draws: &mut Draws, earlier: &mut Vec<f64>) -> Ray {
+    let small = |d: &mut Draws| d.below(5) as f64 - 2.0;
+    let mut origin = draws.vector(earlier);
+    let dir = match draws.below(4) {
+        0 => draws.pick(&DVec3::AXES) * draws.pick(&[-1.0, 1.0, 2.0]),
+        1 => DVec3::new(small(draws), small(draws), small(draws)),
+        _ => 10f64.powf(draws.between(-1.0, 1.0)) * draws.direction(),
+    };
+    let dir = if dir == DVec3::ZERO { DVec3::X } else { dir };
+    if draws.chance(0.3) {
+        origin -= dir * draws.between(0.0, 100.0);
+    }
+    Ray::new(origin, dir)
+}
+
+/// The same expression with the operands of each node in another order.
+pub fn permuted(draws: &mut Draws, expr: &Expr) -> Expr {
+    let mut again = |list: &[Expr]| {
+        let mut list: Vec<Expr> = list.iter().map(|e| permuted(draws, e)).collect();
+        draws.shuffle(&mut list);
+        list
+    };
+    match expr {
+        Expr::Leaf(i) => Expr::Leaf(*i),
+        Expr::Or(list) => Expr::Or(again(list)),
+        Expr::And(list) => Expr::And(again(list)),
+        Expr::Xor(list) => Expr::Xor(again(list)),
+        Expr::Not(inner) => Expr::Not(Box::new(permuted(draws, inner))),
+    }
+}
+
+/// The same expression with other brackets: every list is cut into lists of lists.
+pub fn bracketed(draws: &mut Draws, expr: &Expr) -> Expr {
+    let mut again = |list: &[Expr], node: fn(Vec<Expr>) -> Expr| {
+        let mut list: Vec<Expr> = list.iter().map(|e| bracketed(draws, e)).collect();
+        while 2 < list.len() {
+            let at = draws.below(list.len() - 1);
+            let pair: Vec<Expr> = list.drain(at..at + 2).collect();
+            list.insert(at, node(pair));
+        }
+        node(list)
+    };
+    match expr {
+        Expr::Leaf(i) => Expr::Leaf(*i),
+        Expr::Or(list) => again(list, Expr::Or),
+        Expr::And(list) => again(list, Expr::And),
+        Expr::Xor(list) => again(list, Expr::Xor),
+        Expr::Not(inner) => Expr::Not(Box::new(bracketed(draws, inner))),
+    }
+}
