@@ -18,6 +18,18 @@ pub(super) struct Cleaner<'a> {
     reach: f64,
     /// Whether the next span has already begun where the range begins.
     open: bool,
+    bound: Bound,
+}
+
+/// The largest that any leaf of a tree brings in, world lengths.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub(super) struct Bound {
+    /// Of the scale of rounding errors ([`super::Leaf::scale`]).
+    pub scale: f64,
+    /// Of the error of a crossing.
+    pub shift: f64,
+    /// Of what a leaf does not resolve.
+    pub grain: f64,
 }
 
 /// A change with the slope of its face: |dir . n|.
@@ -28,11 +40,12 @@ struct Face {
 }
 
 impl<'a> Cleaner<'a> {
-    /// Starts the sweep. `bound` is [`super::Object::bound`].
-    pub fn new(mut sweep: Sweep<'a>, bound: [f64; 2]) -> Cleaner<'a> {
+    /// Starts the sweep.
+    pub fn new(mut sweep: Sweep<'a>, bound: Bound) -> Cleaner<'a> {
         let open = sweep.begin();
-        let reach = bound[1] + tolerance::cleanup(bound[0].max(sweep.ray.origin.length()));
-        Cleaner { sweep, ahead: None, reach, open }
+        // Two crossings, one for either face.
+        let reach = 2.0 * bound.shift + tolerance::cleanup(bound.scale.max(sweep.ray.origin.length()));
+        Cleaner { sweep, ahead: None, reach, open, bound }
     }
 
     fn face(&mut self, change: Change) -> Face {
@@ -111,9 +124,32 @@ impl<'a> Cleaner<'a> {
         self.first_face().map(|(face, entering)| (self.owned(&face.change), entering))
     }
 
-    /// Whether any span survives.
+    /// Whether any span survives. A ray that asks this leaves a surface; spans that end so near to where it begins
+    /// that the leaf they end on does not resolve them ([`crate::solid::Solid::grain`]) hide nothing.
     pub fn any(&mut self) -> bool {
-        self.open || self.first_face().is_some()
+        let begin = self.sweep.range.lo;
+        loop {
+            let open = std::mem::take(&mut self.open);
+            let enter = if open { None } else { self.take(f64::INFINITY) };
+            if !open && enter.is_none() {
+                return false;
+            }
+            let length = self.sweep.ray.dir.length();
+            let coarsest = self.bound.grain;
+            let limit = match &enter {
+                None => f64::INFINITY,
+                Some(face) => self.horizon(face).max(begin + coarsest / length),
+            };
+            let Some(exit) = self.exit(limit) else { return true };
+            let leaf = &self.sweep.tree.leaves()[exit.change.leaf as usize];
+            let grain = leaf.solid.grain() * leaf.place.stretch;
+            let unresolved = (exit.change.t - begin) * length <= grain;
+            let thin = enter.is_some_and(|enter| self.is_thin(&enter, &exit));
+            if !unresolved && !thin {
+                return true;
+            }
+            self.sweep.scratch.counts.cleaned += 1;
+        }
     }
 
     fn first_face(&mut self) -> Option<(Face, bool)> {

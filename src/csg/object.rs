@@ -1,6 +1,6 @@
 //! An object: a tree with what its sweeps share.
 
-use super::cleanup::Cleaner;
+use super::cleanup::{Bound, Cleaner};
 use super::spans::{Boundary, Spans};
 use super::sweep::{Room, Sweep};
 use super::tree::{Expr, Leaf, Tree};
@@ -21,18 +21,21 @@ pub struct Scratch {
 pub struct Object {
     tree: Tree,
     outside: State,
-    bound: [f64; 2],
+    bound: Bound,
 }
 
 impl Object {
     /// Combines leaves.
     pub fn new(leaves: Vec<Leaf>, expr: &Expr) -> Object {
-        let scale = leaves.iter().map(Leaf::scale).fold(0.0, f64::max);
-        let error = leaves.iter().map(|l| l.solid.shift_bound() * l.place.stretch).fold(0.0, f64::max);
+        let most = |of: fn(&Leaf) -> f64| leaves.iter().map(of).fold(0.0, f64::max);
+        let bound = Bound {
+            scale: most(Leaf::scale),
+            shift: most(|l| l.solid.shift_bound() * l.place.stretch),
+            grain: most(|l| l.solid.grain() * l.place.stretch),
+        };
         let tree = Tree::new(leaves, expr);
         let outside = State::outside(&tree);
-        // The scale of rounding errors, and twice the largest bound of a crossing: one for either face.
-        Object { tree, outside, bound: [scale, 2.0 * error] }
+        Object { tree, outside, bound }
     }
 
     /// The leaves.
@@ -50,7 +53,8 @@ impl Object {
         self.cleaner(ray, range, scratch).first()
     }
 
-    /// Whether any part of the range is inside.
+    /// Whether any part of the range is inside, for a ray that leaves a surface where the range begins: what a leaf does
+    /// not resolve there ([`crate::solid::Solid::grain`]) does not count.
     pub fn any(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> bool {
         self.cleaner(ray, range, scratch).any()
     }

@@ -26,7 +26,7 @@ use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use glam::{DMat3, DVec3};
 
 use super::neighbours::Neighbours;
-use super::{Facing, Stray, Weight};
+use super::{AnyWay, Facing, Stray, Weight};
 use crate::num::cholesky::Cholesky;
 use crate::num::eigen::symmetric3;
 use crate::num::lanes::{Lanes, Lanes3, sum};
@@ -65,8 +65,15 @@ const LAST_STEP: f64 = 1e-7;
 /// The largest single step, radians and local units: the quadratic model is good for no more.
 const LONGEST_STEP: f64 = 0.5;
 
-/// Where the search starts: the mean normal of the samples that face like `outward`, weighted about the foot; the
-/// plane through their weighted centroid.
+/// The weight that decides which side r belongs to is so much narrower, as a factor on squared distances: its support
+/// still holds the whole trust sphere's radius.
+const NARROW: f64 = 4.0;
+/// Normals that cancel to less than this share do not say which side.
+const CLEAR: f64 = 0.2;
+
+/// Where the search starts: the plane through the weighted centroid of the samples about the foot that face like the
+/// surface next to r, across their mean normal. Which way that is a narrower weight about r itself decides, so that the
+/// nearer side of a thin wall wins and at its rim both sides together; where normals cancel, `outward` decides.
 pub(super) fn start<W: Weight, A: Facing>(
     weight: W,
     _: A,
@@ -76,7 +83,15 @@ pub(super) fn start<W: Weight, A: Facing>(
     outward: DVec3,
 ) -> Result<Plane, Stray> {
     let (sum, centroid, normal) =
-        dispatch!(Level::new(), simd => means::<_, W, A>(simd, weight, near, foot, outward));
+        dispatch!(Level::new(), simd => means::<_, W, AnyWay>(simd, weight, near, r, NARROW, outward));
+    let (foot, outward) = if CLEAR * sum < normal.length() {
+        let outward = normal.normalize();
+        (r + outward * outward.dot(centroid / sum), outward)
+    } else {
+        (foot, outward)
+    };
+    let (sum, centroid, normal) =
+        dispatch!(Level::new(), simd => means::<_, W, A>(simd, weight, near, foot, 1.0, outward));
     // Below this share of one full sample nothing is near: the foot lies outside every support.
     const NOTHING: f64 = 1e-6;
     if sum < NOTHING {
@@ -100,6 +115,7 @@ fn means<S: Simd, W: Weight, A: Facing>(
     weight: W,
     near: &Neighbours,
     r: DVec3,
+    narrow: f64,
     outward: DVec3,
 ) -> (f64, DVec3, DVec3) {
     let mut total = Lanes::splat(simd, 0.0);
@@ -108,7 +124,7 @@ fn means<S: Simd, W: Weight, A: Facing>(
         let (p, ih2) = near.block(simd, block);
         let m = near.normals(simd, block);
         let d = p.minus(r);
-        let mut w = weight.value(simd, d.length_squared() * ih2);
+        let mut w = weight.value(simd, d.length_squared() * ih2 * narrow);
         if A::VARIES {
             w *= A::jet(simd, m.dot(outward))[0];
         }

@@ -136,7 +136,9 @@ impl World {
         let point = ray.at(boundary.t);
         let filler = boundary.filler.and_then(|f| self.solids.leaves()[f as usize].material);
         let scale = point.length().max(ray.origin.length()).max(leaf.scale());
-        let error = boundary.crossing.shift.max(leaf.solid.shift_bound()) * leaf.place.stretch;
+        let bound = boundary.crossing.shift.max(leaf.solid.shift_bound()) * leaf.place.stretch;
+        // A crossing that is known to lie within `err` lies within this along the normal.
+        let error = bound.max(boundary.crossing.err * ray.dir.dot(boundary.normal).abs());
         Surface {
             point,
             normal: boundary.normal,

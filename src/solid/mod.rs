@@ -64,6 +64,12 @@ pub trait Solid: Send + Sync + Debug {
         0.0
     }
 
+    /// A length of the solid's own frame below which its boundary is not resolved: a ray that leaves the boundary and
+    /// seems to be inside for no longer than this is outside. Zero for closed forms.
+    fn grain(&self) -> f64 {
+        0.0
+    }
+
     /// Whether asking costs much more than a closed form: such solids are asked last.
     fn is_costly(&self) -> bool {
         false

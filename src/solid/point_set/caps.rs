@@ -52,13 +52,24 @@ impl PointSet {
         PointSet { closure: Some(Closure { boxes, rim }), ..self.with_body(Body::Solid) }
     }
 
-    /// Appends the caps of a gap, ascending; `ends` are the states at its two ends.
-    pub(super) fn caps(&self, line: &Ray, gap: Interval, ends: [bool; 2], out: &mut Vec<Cap>) {
+    /// Appends the caps of a gap, ascending; `ends` are the states at its two ends, `blind` the stretches of bands in
+    /// which F is undefined.
+    pub(super) fn caps(
+        &self,
+        line: &Ray,
+        gap: Interval,
+        ends: [bool; 2],
+        blind: impl Iterator<Item = Interval>,
+        out: &mut Vec<Cap>,
+    ) {
         let boxes = self.closure.as_ref().map_or(&[][..], |c| &c.boxes);
-        let stretches = merged(boxes.iter().map(|b| b.clip(line).intersect(gap)));
-        for stretch in &stretches {
-            self.scan(line, *stretch, out);
+        let in_holes = |s: f64| boxes.iter().any(|b| b.contains(line.at(s)));
+        let stretches = boxes.iter().map(|b| b.clip(line)).chain(blind);
+        for stretch in merged(stretches.map(|s| s.intersect(gap)).filter(|s| s.lo < s.hi)) {
+            self.scan(line, stretch, out);
         }
+        // Away from holes the level one half only stands in for a surface that F fails to give.
+        out.iter_mut().for_each(|cap| cap.repair = !in_holes(cap.s));
         if out.is_empty() && ends[0] == ends[1] {
             return;
         }

@@ -10,7 +10,7 @@ use super::PointSet;
 use super::caps::Cap;
 use super::hierarchy::Reach;
 use super::probe::{Probe, Room};
-use super::roots::{Findings, Piece, Search};
+use super::roots::{Findings, Piece, Search, WALL};
 use crate::geom::{Interval, Ray};
 use crate::solid::{Answer, Body, Counts, Crossing, Scratch};
 
@@ -127,17 +127,29 @@ impl PointSet {
             let (_, gradient) = self.winding().value_and_gradient(at);
             return (-gradient).try_normalize().unwrap_or(facing);
         }
-        let band = line.bands.partition_point(|b| b.range.hi < s).min(line.bands.len().max(1) - 1);
-        let spheres = line.bands.get(band).map_or(&[][..], |b| &line.reaches[b.spheres[0]..b.spheres[1]]);
         if crossing.part == part::WALL {
             // A wall stands where definitions disagree: the nearest sample tells best how the surface lies.
-            let normal = self.sample_normal(&unit, s, spheres);
+            let nearest = self.nearest_sample(&unit, s, PointSet::spheres_at(line, s));
+            let normal = self.samples.normals[nearest];
             return if 0.0 < normal.dot(facing) { normal } else { facing };
         }
         let before = line.room.projections;
+        let band = line.bands.partition_point(|b| b.range.hi < s).min(line.bands.len().max(1) - 1);
+        let spheres = line.bands.get(band).map_or(&[][..], |b| &line.reaches[b.spheres[0]..b.spheres[1]]);
         let gradient = self.gradient_at(&unit, s, spheres, &mut line.room);
         counts.projections += line.room.projections - before;
         gradient.and_then(DVec3::try_normalize).unwrap_or(facing)
+    }
+
+    /// The trust spheres of the band at or after arc length `s`.
+    fn spheres_at(line: &LineScratch, s: f64) -> &[Reach] {
+        let band = line.bands.partition_point(|b| b.range.hi < s).min(line.bands.len().max(1) - 1);
+        line.bands.get(band).map_or(&[][..], |b| &line.reaches[b.spheres[0]..b.spheres[1]])
+    }
+
+    /// The width of the sample nearest to arc length `s`.
+    fn width_near(&self, unit: &Ray, s: f64, line: &LineScratch) -> f64 {
+        self.samples.widths[self.nearest_sample(unit, s, PointSet::spheres_at(line, s))]
     }
 
     /// This thread's knowledge of the line, begun afresh where the line is another.
@@ -290,13 +302,15 @@ impl PointSet {
     ) {
         let Some(unit) = line.line else { return };
         line.caps.clear();
-        self.caps(&unit, gap, ends, &mut line.caps);
+        let blind = line.bands.iter().map(|b| b.range);
+        self.caps(&unit, gap, ends, blind, &mut line.caps);
         for cap in &line.caps {
             counts.caps += 1;
             counts.parity_repairs += u64::from(cap.repair);
+            let err = if cap.repair { WALL * self.width_near(&unit, cap.s, line) } else { cap.err };
             report(Crossing {
                 t: line.t(cap.s),
-                err: cap.err * line.per_s,
+                err: err * line.per_s,
                 shift: cap.err,
                 entering: cap.entering,
                 part: if cap.repair { part::WALL } else { part::CAP },

@@ -78,6 +78,8 @@ pub struct PointSet {
     mixed: bool,
     /// A bound of the error along the normal, world length.
     tolerance: f64,
+    /// How far two definitions of inside may disagree, world length: [`roots::WALL`] of the median width.
+    grain: f64,
     bounds: Aabb,
     body: Body,
     closure: Option<Closure>,
@@ -105,6 +107,7 @@ impl PointSet {
             degree: options.degree,
             mixed: options.mixed,
             tolerance: options.tolerance * diagonal,
+            grain: roots::WALL * median(widths),
             bounds,
             body: Body::Sheet,
             closure: None,
@@ -145,6 +148,12 @@ impl PointSet {
     }
 }
 
+fn median(widths: &[f64]) -> f64 {
+    let mut sorted = widths.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+}
+
 fn next_id() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     NEXT.fetch_add(1, Ordering::Relaxed)
@@ -179,6 +188,10 @@ impl Solid for PointSet {
 
     fn shift_bound(&self) -> f64 {
         self.tolerance
+    }
+
+    fn grain(&self) -> f64 {
+        self.grain
     }
 
     fn is_costly(&self) -> bool {

@@ -63,9 +63,9 @@ impl PointSet {
         (field.kept < WHOLE || self.near_rim(sample)) && self.kernel.edge() < field.drift
     }
 
-    /// The normal of the sample nearest to arc length `s`.
-    pub(super) fn sample_normal(&self, line: &Ray, s: f64, spheres: &[Reach]) -> DVec3 {
-        self.samples.normals[nearest(&self.samples, line.at(s), s, spheres)]
+    /// The sample nearest to arc length `s`, in its own widths.
+    pub(super) fn nearest_sample(&self, line: &Ray, s: f64, spheres: &[Reach]) -> usize {
+        nearest(&self.samples, line.at(s), s, spheres)
     }
 
     /// grad F at arc length `s`.

@@ -71,6 +71,10 @@ const LONGEST: f64 = 2.0;
 /// A split leaves at least this share on either side.
 const SHARE: f64 = 0.1;
 
+/// Where definitions of inside disagree, the wall between them is uncertain by this many widths: the samples do not
+/// resolve less.
+pub(super) const WALL: f64 = 0.5;
+
 /// The search in one band.
 pub(super) struct Search<'a> {
     /// The surface.
@@ -124,11 +128,28 @@ impl Search<'_> {
 
     fn close(&mut self, open: &mut Option<(f64, bool, usize)>, at: &Probe, f: [f64; 2]) {
         if let Some((lo, inside, first)) = open.take() {
+            self.drop_flaps(first);
             self.out.pieces.push(Piece {
                 range: Interval::new(lo, at.s),
                 inside: [inside, f[0] < 0.0],
                 roots: [first, self.out.roots.len()],
             });
+        }
+    }
+
+    /// Drops pairs of crossings, one of them a jump, that lie nearer to each other than the jump is certain.
+    fn drop_flaps(&mut self, first: usize) {
+        let roots = &mut self.out.roots;
+        let mut i = first;
+        while i + 1 < roots.len() {
+            let (a, b) = (&roots[i], &roots[i + 1]);
+            let loose = if a.jump { a.err } else { 0.0 }.max(if b.jump { b.err } else { 0.0 });
+            if b.s - a.s < loose {
+                roots.drain(i..i + 2);
+                i = i.saturating_sub(1).max(first);
+            } else {
+                i += 1;
+            }
         }
     }
 
@@ -192,6 +213,10 @@ impl Search<'_> {
             entering: fb[0] < fa[0],
             jump,
         });
+        if jump && let Some(last) = self.out.roots.last_mut() {
+            // Which side of a jump the surface belongs to is not known better than this.
+            last.err = WALL * a.width.min(b.width);
+        }
     }
 
     /// Refines the one root of a cell by Newton's method kept within the bracket, until the curvature bounds its
