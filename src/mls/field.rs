@@ -126,7 +126,7 @@ impl<W: Weight, A: Facing> Evaluator<W, A> {
         if fit.vote.abs() < VOTE {
             return Err(Stray::Undecided);
         }
-        let inward = gradient(self.weight, self.facing, near, r, plane, basis, &jet.hessian, &fit)?;
+        let inward = gradient(self.weight, self.facing, near, r, plane, &jet.hessian, &fit)?;
         // n points into the solid where the outward normals stand against it.
         let sign = -fit.vote.signum();
         Ok(Sample {

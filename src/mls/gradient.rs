@@ -33,7 +33,8 @@ struct Forms {
     by_n: [f64; 2],
 }
 
-/// grad F in the frame of the world (F and r share their unit, so it has none).
+/// grad F in the frame of the world (F and r share their unit, so it has none). The Hessian is that of the plane, in the
+/// basis of the fit.
 ///
 /// Fails with [`Stray::Saddle`] where the plane is not a strict local minimum.
 pub(super) fn gradient<W: Weight, A: Facing>(
@@ -42,10 +43,10 @@ pub(super) fn gradient<W: Weight, A: Facing>(
     near: &Neighbours,
     r: DVec3,
     plane: &Plane,
-    basis: [DVec3; 2],
     hessian: &[[f64; 3]; 3],
     fit: &Fit,
 ) -> Result<DVec3, Stray> {
+    let basis = fit.basis;
     let f = match fit.degree {
         0 => forms::<W, A, 0>(weight, near, r, plane, basis, fit),
         1 => forms::<W, A, 1>(weight, near, r, plane, basis, fit),

@@ -34,6 +34,8 @@ pub(super) const fn index(a: usize, b: usize) -> usize {
 pub(super) struct Fit {
     /// The degree that the samples determine, at most the one asked.
     pub degree: usize,
+    /// The directions of u and v.
+    pub basis: [DVec3; 2],
     /// The coefficients c, local units.
     pub c: [f64; MAX_COEFFICIENTS],
     /// The first column of the inverse of the normal matrix: a0 . beta(u, v) is the shape function of a sample.
@@ -85,6 +87,7 @@ pub(super) fn fit<W: Weight, A: Facing>(
             unit[0] = 1.0;
             return Ok(Fit {
                 degree,
+                basis,
                 c: factor.solve(&sums.heights),
                 a0: factor.solve(&unit),
                 drift: sums.drift.map(|d| d / total),

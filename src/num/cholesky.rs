@@ -15,10 +15,8 @@ impl<const N: usize> Cholesky<N> {
         let mut l = [[0.0; N]; N];
         for i in 0..n {
             for j in 0..=i {
-                let mut sum = a[i][j];
-                for k in 0..j {
-                    sum -= l[i][k] * l[j][k];
-                }
+                let products = l[i].iter().zip(&l[j]).take(j);
+                let sum = products.fold(a[i][j], |sum, (x, y)| sum - x * y);
                 if i == j {
                     let large_enough = sum > ratio * a[i][i] && sum > 0.0;
                     if !large_enough {
