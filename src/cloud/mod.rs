@@ -13,6 +13,7 @@ pub mod normals;
 mod order;
 pub mod ply;
 mod samples;
+pub mod scraps;
 pub mod spacing;
 mod strays;
 mod tree;

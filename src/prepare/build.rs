@@ -4,18 +4,21 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::{Options, ScanReport, complaint, files};
+use super::{ScanReport, complaint, files};
 use crate::cloud::holes::{Hole, holes};
+use crate::cloud::scraps::bounding;
+use crate::cloud::winding::Winding;
 use crate::cloud::{Cloud, CloudError, CloudFault, NormalSource, SampleOptions, Samples, ply};
 use crate::diag::{Diagnostic, Fault};
 use crate::scene::{Call, ShapeNode, Value};
-use crate::solid::point_set::{PointSet, Solidity};
+use crate::solid::point_set::{Options, PointSet, Solidity};
 use crate::solid::{Body, Counts, Solid, points};
 
 /// A scan, with what has been found out about it so far.
 #[derive(Debug)]
 struct Scan {
     samples: Samples,
+    options: Options,
     surface: Arc<PointSet>,
     measured: Option<(Solidity, Arc<PointSet>)>,
     holes: Option<Vec<Hole>>,
@@ -39,7 +42,7 @@ pub(super) struct ScanId(usize);
 /// Builds calls and keeps what it has built.
 #[derive(Debug)]
 pub(super) struct Builder<'a> {
-    options: &'a Options,
+    options: &'a super::Options,
     /// By the address of the node, which lives as long as the scene.
     built: HashMap<usize, Built>,
     scan: Vec<Scan>,
@@ -55,7 +58,7 @@ pub(super) struct Builder<'a> {
 
 impl<'a> Builder<'a> {
     /// Nothing built yet.
-    pub fn new(options: &'a Options) -> Builder<'a> {
+    pub fn new(options: &'a super::Options) -> Builder<'a> {
         Builder {
             options,
             built: HashMap::new(),
@@ -85,7 +88,7 @@ impl<'a> Builder<'a> {
             return Err(error.help("write `points(\"scan.ply\")` or `points(sphere(r: 1), samples: 2000)`"));
         };
         let at = call.place("source");
-        let Options { scene_dir, allow_read, .. } = self.options;
+        let super::Options { scene_dir, allow_read, .. } = self.options;
         let path = files::resolve(text, base, *from_command_line, scene_dir, allow_read, at)?;
         self.inputs.push(path.clone());
         ply::read_path(&path).map_err(|e| cloud_complaint(call, &format!("`{text}`"), e))
@@ -103,10 +106,11 @@ impl<'a> Builder<'a> {
             keep_strays: false,
         };
         let samples = Samples::new(cloud, &options).map_err(|e| cloud_complaint(call, "the cloud", e))?;
-        let Samples { points, normals, widths, notes, .. } = &samples;
-        let surface = Arc::new(PointSet::new(points, normals, widths, &points::options(call)));
-        self.scans.push(ScanReport { name: name.to_owned(), samples: points.len(), notes: notes.clone() });
-        self.scan.push(Scan { samples, surface, measured: None, holes: None, closed: Vec::new() });
+        let options = points::options(call);
+        let surface = surface_of(&samples, &options);
+        let notes = samples.notes.clone();
+        self.scans.push(ScanReport { name: name.to_owned(), samples: samples.len(), notes });
+        self.scan.push(Scan { samples, options, surface, measured: None, holes: None, closed: Vec::new() });
         Ok(ScanId(self.scan.len() - 1))
     }
 
@@ -128,11 +132,22 @@ impl<'a> Builder<'a> {
         (*solidity, surface.clone())
     }
 
-    /// The surface with its holes up to `max_hole` wide capped, or the width of the widest one. Own units.
+    /// The surface with its holes up to `max_hole` wide capped, or the width of the widest one. Own units. Scraps that
+    /// bound nothing are dropped and counted.
     pub fn closed(&mut self, id: ScanId, max_hole: f64) -> Result<Arc<PointSet>, f64> {
         let scan = &mut self.scan[id.0];
         if let Some((_, surface)) = scan.closed.iter().find(|c| c.0 == max_hole) {
             return Ok(surface.clone());
+        }
+        if scan.holes.is_none() {
+            let keep = bounding(&scan.samples, &scan.samples.winding(Winding::OPENING));
+            let scraps = keep.iter().filter(|k| !**k).count();
+            if 0 < scraps {
+                let note = format!("{scraps} samples bound no inside and were dropped to close the scan");
+                self.scans[id.0].notes.push(note);
+                scan.samples = scan.samples.selected(&keep);
+                scan.surface = surface_of(&scan.samples, &scan.options);
+            }
         }
         let found = scan.holes.get_or_insert_with(|| holes(&scan.samples));
         let widest = found.iter().map(|h| h.width).fold(0.0, f64::max);
@@ -144,6 +159,10 @@ impl<'a> Builder<'a> {
         scan.closed.push((max_hole, surface.clone()));
         Ok(surface)
     }
+}
+
+fn surface_of(samples: &Samples, options: &Options) -> Arc<PointSet> {
+    Arc::new(PointSet::new(&samples.points, &samples.normals, &samples.widths, options))
 }
 
 impl Solidity {
