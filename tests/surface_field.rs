@@ -12,7 +12,7 @@ use pss::num::hash::Stream;
 /// All samples, no tree, no cut.
 fn brute(points: &[DVec3], normals: &[DVec3], h: impl Fn(DVec3) -> f64, unit: f64) -> Neighbours {
     let mut near = Neighbours::default();
-    near.reset(DVec3::ZERO, unit, f64::INFINITY);
+    near.reset(DVec3::ZERO, unit, f64::INFINITY, DVec3::Z);
     for (p, n) in points.iter().zip(normals) {
         near.push(*p, *n, 1.0 / h(*p));
     }

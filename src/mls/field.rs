@@ -6,7 +6,7 @@ use super::gradient::gradient;
 use super::neighbours::Neighbours;
 use super::plane::{Jet, Plane, settle, start};
 use super::polynomial::fit;
-use super::{Facing, MAX_DEGREE, Weight};
+use super::{AnyWay, Facing, MAX_DEGREE, Weight};
 
 /// Why a point has no projection. A failure that belongs to the method, not an error of the program.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
@@ -84,6 +84,10 @@ const STEEPEST: f64 = 1.0;
 /// The mean normal must agree at least this much with the plane's: normals of two sheets cancel.
 const VOTE: f64 = 0.1;
 
+/// Cosines of 60 and of 24 degrees, which together are the 84 within which [`super::SameWay`] is one.
+const ALIGNED: f64 = 0.5;
+const STRAIGHT: f64 = 0.913_545_457_642_600_9;
+
 impl<W: Weight, A: Facing> Evaluator<W, A> {
     /// F and its gradient at a world point.
     ///
@@ -93,6 +97,20 @@ impl<W: Weight, A: Facing> Evaluator<W, A> {
     /// samples whose support reaches the ball of [`Neighbours::reach`] about its origin; where q or the foot lie
     /// beyond, the answer is [`Stray::OutOfReach`].
     pub fn sample(&self, near: &Neighbours, at: DVec3, guess: &Guess) -> Result<Sample, Stray> {
+        if A::VARIES && ALIGNED <= near.least {
+            // All normals lie within 60 degrees of one direction: where the plane's is within 24 of it too, every
+            // factor of facing is exactly one, and need not be computed.
+            let plain = Evaluator { weight: self.weight, facing: AnyWay, degree: self.degree };
+            let answer = plain.search(near, at, guess);
+            let straight = |s: &Sample| STRAIGHT <= s.plane_normal.dot(near.outward);
+            if answer.as_ref().is_ok_and(straight) || answer == Err(Stray::OutOfReach) {
+                return answer;
+            }
+        }
+        self.search(near, at, guess)
+    }
+
+    fn search(&self, near: &Neighbours, at: DVec3, guess: &Guess) -> Result<Sample, Stray> {
         let Guess { foot, outward, width } = *guess;
         let local = |p: DVec3| (p - near.origin) / near.unit;
         let (r, foot) = (local(at), local(foot));

@@ -14,6 +14,10 @@ pub struct Neighbours {
     pub unit: f64,
     /// Every sample is here whose support reaches the ball of this radius about the origin, local units.
     pub reach: f64,
+    /// The outward unit normal that the samples' own are compared with.
+    pub outward: DVec3,
+    /// The least cosine between that and a sample's normal.
+    pub least: f64,
     per_unit: f64,
     blocks: Vec<Block>,
     count: usize,
@@ -47,7 +51,9 @@ const PADDING: Block = Block {
 
 impl Neighbours {
     /// Forgets the samples and sets the local frame. Whoever pushes the samples promises the `reach`.
-    pub fn reset(&mut self, origin: DVec3, unit: f64, reach: f64) {
+    pub fn reset(&mut self, origin: DVec3, unit: f64, reach: f64, outward: DVec3) {
+        self.outward = outward;
+        self.least = 1.0;
         self.origin = origin;
         self.unit = unit;
         self.per_unit = 1.0 / unit;
@@ -66,6 +72,7 @@ impl Neighbours {
         self.count += 1;
         let p = (point - self.origin) * self.per_unit;
         let k = self.unit * inverse_width;
+        self.least = self.least.min(normal.dot(self.outward));
         if let Some(block) = self.blocks.last_mut() {
             block.x[lane] = p.x;
             block.y[lane] = p.y;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use rayon::join;
 
 use crate::geom::{Aabb, Interval, Ray};
-use crate::mls::Neighbours;
+use crate::mls::{Guess, Neighbours};
 
 /// Samples in the order of the hierarchy.
 #[derive(Clone, Debug)]
@@ -100,9 +100,10 @@ impl Hierarchy {
     }
 
     /// Gathers every sample whose support (`support` is that of the weight, in squared widths) reaches the ball of
-    /// `reach` units about `center`, in the order of storage.
-    pub fn gather(&self, center: DVec3, unit: f64, reach: f64, support: f64, out: &mut Neighbours) {
-        out.reset(center, unit, reach);
+    /// `reach` widths about the foot of a guess, in the order of storage.
+    pub fn gather(&self, guess: &Guess, reach: f64, support: f64, out: &mut Neighbours) {
+        let Guess { foot: center, outward, width: unit } = *guess;
+        out.reset(center, unit, reach, outward);
         let (k, r) = (support.sqrt(), reach * unit);
         let mut stack = [0u32; 64];
         let mut depth = usize::from(!self.nodes.is_empty());

@@ -124,12 +124,12 @@ impl PointSet {
             }
         }
         room.ready = true;
-        self.samples.gather(guess.foot, width, REACH, support, &mut room.near);
+        self.samples.gather(&guess, REACH, support, &mut room.near);
         let answer = evaluator.sample(&room.near, at, &guess);
         if answer != Err(Stray::OutOfReach) {
             return answer;
         }
-        self.samples.gather(guess.foot, width, FAR_REACH, support, &mut room.near);
+        self.samples.gather(&guess, FAR_REACH, support, &mut room.near);
         match evaluator.sample(&room.near, at, &guess) {
             Err(Stray::OutOfReach) => Err(Stray::Outside),
             answer => answer,
