@@ -9,6 +9,10 @@ use super::neighbours::Table;
 /// a million.
 pub const AREA_NEIGHBOURS: usize = 16;
 
+/// The disc that bounds a cell, in widths of its sample. On a ball of 20,000 quasi-random samples with a cap missing,
+/// half a width cuts a quarter of the area off, three quarters leave it right to 0.4 % and one width adds 0.7 %.
+pub const AREA_REACH: f64 = 0.75;
+
 /// Corners of the polygon that stands for the disc.
 const CORNERS: usize = 16;
 

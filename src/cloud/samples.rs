@@ -7,7 +7,8 @@ use super::neighbours::{Neighbours, Table};
 use super::normals::{self, NORMAL_NEIGHBOURS, Oriented, Scene};
 use super::winding::Winding;
 use super::{
-    AREA_NEIGHBOURS, Cloud, CloudError, areas, check_extent, merge_duplicates, order, spacing, strays,
+    AREA_NEIGHBOURS, AREA_REACH, Cloud, CloudError, areas, check_extent, merge_duplicates, order, spacing,
+    strays,
 };
 use crate::geom::Aabb;
 
@@ -112,7 +113,8 @@ impl Samples {
     /// The winding number of the samples; `opening` as for [`Winding::new`], such as [`Winding::OPENING`].
     pub fn winding(&self, opening: f64) -> Winding {
         let measured = Measured::new(&self.points);
-        let areas = areas(&self.points, &self.normals, &measured.widths, &measured.table);
+        let reach: Vec<f64> = measured.widths.iter().map(|h| AREA_REACH * h).collect();
+        let areas = areas(&self.points, &self.normals, &reach, &measured.table);
         Winding::new(&self.points, &self.normals, &areas, opening)
     }
 }

@@ -91,8 +91,9 @@ impl PointSet {
                     state = c.entering;
                 }
             });
-            let until = if done { f64::INFINITY } else { line.t(place.s) };
-            let found = first < out.len();
+            // A wall may stand where the gap after this piece begins: the answer ends just before.
+            let until = if done { f64::INFINITY } else { line.t(place.s).next_down() };
+            let found = first < out.len() && out.last().is_some_and(|c| c.t <= until);
             if done || range.hi <= until || (found && range.lo < until) {
                 return Answer { inside: state, range: Interval::new(range.lo, until) };
             }

@@ -1,0 +1,132 @@
+//! Surfaces with holes, closed by the winding number; and the solidity of real scans.
+
+mod common;
+
+use std::path::PathBuf;
+
+use common::{Truth, chord};
+use glam::DVec3;
+use pss::cloud::holes::holes;
+use pss::cloud::{Cloud, SampleOptions, Samples, ply};
+use pss::geom::{Interval, Ray};
+use pss::solid::point_set::{Options, PointSet};
+use pss::solid::{Body, Crossing, Scratch, Solid};
+
+fn all(set: &PointSet, ray: &Ray, scratch: &mut Scratch) -> Vec<Crossing> {
+    let mut out = Vec::new();
+    let mut lo = f64::NEG_INFINITY;
+    while lo < f64::INFINITY {
+        lo = set.crossings(ray, Interval::new(lo, f64::INFINITY), scratch, &mut out).range.hi;
+    }
+    out
+}
+
+fn surface(samples: &Samples) -> PointSet {
+    PointSet::new(&samples.points, &samples.normals, &samples.widths, &Options::default())
+}
+
+fn closed(samples: &Samples) -> PointSet {
+    let rims: Vec<Vec<u32>> = holes(samples).into_iter().map(|h| h.rim).collect();
+    surface(samples).closed(&rims)
+}
+
+/// A unit ball without what lies above z = 0.8.
+fn open_ball(n: usize) -> Samples {
+    let (points, normals) = Truth::Sphere.cloud(n);
+    let (points, normals) = points.into_iter().zip(normals).filter(|(p, _)| p.z < 0.8).unzip();
+    let cloud = Cloud { points, normals: Some(normals), ..Cloud::default() };
+    Samples::new(cloud, &SampleOptions::default()).unwrap()
+}
+
+#[test]
+fn the_cap_of_a_round_hole_is_flat_and_lies_on_its_chord() {
+    let samples = open_ball(20_000);
+    let spacing = (4.0 * std::f64::consts::PI / 20_000.0f64).sqrt();
+    let found = holes(&samples);
+    assert_eq!(found.len(), 1);
+    assert!((found[0].width - 1.2).abs() < 4.0 * spacing, "{}", found[0].width);
+    let set = closed(&samples);
+    let mut scratch = Scratch::default();
+    let mut heights = Vec::new();
+    for i in 0..400 {
+        let (x, y) = (f64::from(i % 20) * 0.04 - 0.38, f64::from(i / 20) * 0.04 - 0.38);
+        // Well within the rim, whose radius is 0.6.
+        if 0.45 < x.hypot(y) {
+            continue;
+        }
+        let ray = Ray::new(DVec3::new(x, y, 3.0), -DVec3::Z);
+        let crossings = all(&set, &ray, &mut scratch);
+        assert_eq!(crossings.len(), 2);
+        assert!(crossings[0].cap && crossings[0].entering && !crossings[1].cap);
+        let normal = set.normal(&ray, &crossings[0], &mut scratch);
+        assert!(3f64.to_radians().cos() < normal.z, "{x} {y}: {normal}");
+        heights.push(ray.at(crossings[0].t).z);
+        let turned = Ray::new(ray.at(6.0), DVec3::Z);
+        let back = all(&set, &turned, &mut scratch);
+        assert!((back[1].t + crossings[0].t - 6.0).abs() < 1e-6, "met elsewhere from the other side");
+    }
+    let (low, high) = heights.iter().fold((f64::MAX, f64::MIN), |(l, h), z| (l.min(*z), h.max(*z)));
+    assert!((0.8 - low).abs() < spacing && (high - 0.8).abs() < spacing, "{low} {high}");
+}
+
+#[test]
+fn every_line_through_a_closed_surface_goes_in_as_often_as_it_comes_out() {
+    for set in [closed(&open_ball(3000)), closed(&open_ball(12_000))] {
+        let mut scratch = Scratch::default();
+        for i in 0..3000 {
+            let crossings = all(&set, &chord(i, DVec3::ZERO, 1.2), &mut scratch);
+            assert!(crossings.iter().enumerate().all(|(k, c)| c.entering == (k % 2 == 0)), "chord {i}");
+            assert_eq!(crossings.len() % 2, 0, "chord {i}");
+        }
+    }
+}
+
+#[test]
+fn an_open_surface_is_a_sheet_and_a_closed_one_a_solid() {
+    assert_eq!(surface(&open_ball(5000)).measure().body(), Body::Sheet);
+    for truth in Truth::ALL {
+        let (points, normals) = truth.cloud(5000);
+        let measured = common::surface(&points, &normals, &Options::default()).measure();
+        assert_eq!((measured.body(), measured.odd), (Body::Solid, 0), "{truth:?}");
+    }
+}
+
+/// A real scan, if it is there.
+fn scan(name: &str) -> Option<Samples> {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/scans").join(name);
+    if !path.exists() {
+        println!("skipped: {} is not here", path.display());
+        return None;
+    }
+    Some(Samples::new(ply::read_path(&path).unwrap(), &SampleOptions::default()).unwrap())
+}
+
+#[test]
+fn real_scans_are_what_they_are_known_for() {
+    for (name, body) in [("igea.ply", Body::Solid), ("bunny.ply", Body::Sheet)] {
+        let Some(samples) = scan(name) else { continue };
+        let measured = surface(&samples).measure();
+        let share = 100.0 * measured.odd_share();
+        println!("{name}: {} of {} chords odd ({share:.2} %)", measured.odd, measured.chords);
+        assert_eq!(measured.body(), body, "{name}");
+    }
+}
+
+#[test]
+fn lines_through_a_closed_scan_alternate() {
+    for name in ["bunny.ply", "igea.ply"] {
+        let Some(samples) = scan(name) else { continue };
+        let (set, bounds) = (closed(&samples), samples.bounds());
+        let mut scratch = Scratch::default();
+        let mut count = 0;
+        for i in 0..2000 {
+            let ray = chord(i, bounds.center(), 0.5 * bounds.diagonal());
+            let crossings = all(&set, &ray, &mut scratch);
+            assert!(crossings.iter().enumerate().all(|(k, c)| c.entering == (k % 2 == 0)), "{name} {i}");
+            assert_eq!(crossings.len() % 2, 0, "{name} {i}");
+            count += crossings.len();
+        }
+        let per = scratch.counts.projections as f64 / scratch.counts.crossings as f64;
+        println!("{name}: {count} crossings, {per:.2} projections each, {:?}", scratch.counts);
+    }
+}
