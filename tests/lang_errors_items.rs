@@ -79,13 +79,6 @@ error[E0702]: `print` is not supported yet
   | ^^^^^ understood, but not carried out
   = help: write the scene without it, or wait for a later version
 
-error[E0702]: `expect` is not supported yet
- --> scene.pss:4:1
-  |
-4 | expect 1 < 2
-  | ^^^^^^ understood, but not carried out
-  = help: write the scene without it, or wait for a later version
-
 error[E0702]: `for` is not supported yet
  --> scene.pss:5:9
   |

@@ -76,6 +76,8 @@ pub(super) struct Room {
     open: Vec<u32>,
     heap: BinaryHeap<Reverse<Entry>>,
     made: u32,
+    /// Leaves that have been asked.
+    asked: Vec<u32>,
     pub fresh: Vec<Crossing>,
 }
 
@@ -114,6 +116,7 @@ impl<'a> Sweep<'a> {
         room.state.copy_from(outside);
         room.met.clear();
         room.open.clear();
+        room.asked.clear();
         room.heap.clear();
         room.made = 0;
         for (i, leaf) in tree.leaves().iter().enumerate() {
@@ -241,6 +244,9 @@ impl<'a> Sweep<'a> {
     /// A leaf's crossings in a range, into `room.fresh`.
     pub fn query(&mut self, leaf: u32, range: Interval) -> Answer {
         self.scratch.counts.leaf_queries += 1;
+        if !self.room.asked.contains(&leaf) {
+            self.room.asked.push(leaf);
+        }
         let leaf = &self.tree.leaves()[leaf as usize];
         let ray = leaf.place.ray_to_local(self.ray);
         self.room.fresh.clear();
@@ -265,5 +271,12 @@ impl<'a> Sweep<'a> {
         let leaf = &self.tree.leaves()[leaf as usize];
         let ray = leaf.place.ray_to_local(self.ray);
         leaf.place.normal_to_world(leaf.solid.normal(&ray, crossing, self.scratch))
+    }
+}
+
+impl Drop for Sweep<'_> {
+    fn drop(&mut self) {
+        let skipped = self.room.met.len().saturating_sub(self.room.asked.len());
+        self.scratch.counts.leaves_skipped += skipped as u64;
     }
 }
