@@ -189,8 +189,11 @@ fn cloud_complaint(call: &Call, what: &str, e: CloudError) -> Diagnostic {
         CloudFault::Io => ("E0606", Fault::Io),
     };
     let error = Diagnostic::error(code, format!("{what}: {e}")).at(call.place("source"), "").fault(fault);
-    match e.help {
-        Some(help) => error.help(help),
-        None => error,
-    }
+    let usual = match fault {
+        Fault::Missing => {
+            "names in a scene start from its folder, those given by `-D name=value` from the working directory"
+        }
+        _ => "a scan is a PLY file with x, y and z of at least three points that do not lie on a line",
+    };
+    error.help(e.help.unwrap_or_else(|| usual.to_owned()))
 }

@@ -233,6 +233,10 @@ impl<'b, 'o> Lowering<'b, 'o> {
                 Diagnostic::error("E0402", "samples of a solid need a number: `samples:`").at(call.at, "");
             return Err(error.help("write `points(sphere(r: 1), samples: 2000)`"));
         };
+        if call.number("noise").is_some_and(|n| n < 0.0) {
+            let error = Diagnostic::error("E0506", "`noise` is a standard deviation and cannot be negative");
+            return Err(error.at(call.place("noise"), "").help("write zero or more, such as `noise: 0.1`"));
+        }
         let mut own = Lowering::new(self.builder, true);
         let bounds = own.extent(solid, &DAffine3::IDENTITY)?;
         let Lowered::Solid(expr) = own.lower(solid, TOP)? else {
@@ -244,7 +248,10 @@ impl<'b, 'o> Lowering<'b, 'o> {
             noise: call.number("noise").unwrap_or(0.0),
             seed: call.number("seed").unwrap_or(0.0) as u64,
         };
-        sample(&object, &bounds, &sampling).map_err(|e| Diagnostic::error("E0306", e.to_string()).at(at, ""))
+        sample(&object, &bounds, &sampling).map_err(|e| {
+            let error = Diagnostic::error("E0306", e.to_string()).at(at, "");
+            error.help("sample a bounded solid that has an inside, such as `sphere(r: 1)`")
+        })
     }
 
     /// The map of a `.fit` node.
@@ -305,7 +312,7 @@ fn joined_sheets(parts: Vec<(Lowered, Span)>) -> Result<Lowered, Diagnostic> {
 
 fn no_inside(op: BooleanOp, at: Span, why: &str) -> Diagnostic {
     Diagnostic::error("E0301", format!("an operand of `{}` has no inside", op.sign())).at(at, why).help(
-        "close it, `scan.close(max_hole: 8mm)`, or put a solid in its place, such as `half_space(z < 0)` for a floor",
+        "close it, `scan.close(max_hole: 8mm)`, take more samples if its walls are thin, or put a solid in its place, such as `half_space(z < 0)` for a floor",
     )
 }
 
@@ -315,7 +322,7 @@ fn too_wide(at: Span, max_hole: f64, widest: f64) -> Diagnostic {
         format!("the scan has a hole {widest:.3} wide, wider than the {max_hole} allowed"),
     )
     .at(at, "")
-    .help(format!("write `.close(max_hole: {})` if that hole shall be capped too", round_up(widest)))
+    .help(format!("write `.close(max_hole: {})` if that hole shall be capped too", round_up(widest) as f32))
 }
 
 /// Two significant digits, upward.
