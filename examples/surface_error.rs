@@ -9,11 +9,10 @@ mod common;
 
 use std::time::Instant;
 
-use common::{Truth, chord, surface};
+use common::{Truth, all, chord, surface};
 use glam::DVec3;
-use pss::geom::Interval;
 use pss::solid::point_set::Options;
-use pss::solid::{Body, Scratch, Solid};
+use pss::solid::{Body, Scratch};
 
 const CHORDS: u64 = 4000;
 
@@ -33,17 +32,12 @@ fn main() {
 fn line(truth: Truth, samples: usize, options: &Options) {
     let (points, normals) = truth.cloud(samples);
     let set = surface(&points, &normals, options).with_body(Body::Solid);
-    let (mut scratch, mut found) = (Scratch::default(), Vec::new());
+    let mut scratch = Scratch::default();
     let (mut squares, mut worst, mut crossings, mut odd) = (0.0, 0.0f64, 0u32, 0);
     let start = Instant::now();
     for i in 0..CHORDS {
         let ray = chord(i, DVec3::ZERO, 2.0);
-        let mut lo = f64::NEG_INFINITY;
-        found.clear();
-        while lo < f64::INFINITY {
-            let rest = Interval::new(lo, f64::INFINITY);
-            lo = set.crossings(&ray, rest, &mut scratch, &mut found).range.hi;
-        }
+        let found = all(&set, &ray, &mut scratch);
         odd += found.len() % 2;
         for crossing in &found {
             let error = truth.distance(ray.at(crossing.t));

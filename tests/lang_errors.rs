@@ -1,21 +1,7 @@
 //! What users are told, about types and values, letter by letter.
 
+#[macro_use]
 mod lang_support;
-
-use lang_support::complaints;
-
-/// A test that a scene is answered with exactly this text.
-macro_rules! says {
-    ($claim:ident: $scene:expr, $text:expr) => {
-        says! { $claim: $scene, -D &[], $text }
-    };
-    ($claim:ident: $scene:expr, -D $defines:expr, $text:expr) => {
-        #[test]
-        fn $claim() {
-            assert_eq!(complaints($scene, $defines).trim_end(), $text.trim());
-        }
-    };
-}
 
 says! {
     a_wrong_type_is_named: "draw sphere(r: #fff)\n",

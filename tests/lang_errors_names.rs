@@ -1,21 +1,7 @@
 //! What users are told, about operators, names and arguments, letter by letter.
 
+#[macro_use]
 mod lang_support;
-
-use lang_support::complaints;
-
-/// A test that a scene is answered with exactly this text.
-macro_rules! says {
-    ($claim:ident: $scene:expr, $text:expr) => {
-        says! { $claim: $scene, -D &[], $text }
-    };
-    ($claim:ident: $scene:expr, -D $defines:expr, $text:expr) => {
-        #[test]
-        fn $claim() {
-            assert_eq!(complaints($scene, $defines).trim_end(), $text.trim());
-        }
-    };
-}
 
 says! {
     mixed_operators_get_both_readings: "let a = sphere(r: 1)\nlet b = sphere(r: 2)\nlet c = sphere(r: 3)\ndraw a - b | c\n",

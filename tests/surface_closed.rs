@@ -4,22 +4,13 @@ mod common;
 
 use std::path::PathBuf;
 
-use common::{Truth, chord};
+use common::{Truth, all, chord};
 use glam::DVec3;
 use pss::cloud::holes::holes;
 use pss::cloud::{Cloud, SampleOptions, Samples, ply};
-use pss::geom::{Interval, Ray};
+use pss::geom::Ray;
 use pss::solid::point_set::{Options, PointSet};
-use pss::solid::{Body, Crossing, Scratch, Solid};
-
-fn all(set: &PointSet, ray: &Ray, scratch: &mut Scratch) -> Vec<Crossing> {
-    let mut out = Vec::new();
-    let mut lo = f64::NEG_INFINITY;
-    while lo < f64::INFINITY {
-        lo = set.crossings(ray, Interval::new(lo, f64::INFINITY), scratch, &mut out).range.hi;
-    }
-    out
-}
+use pss::solid::{Body, Scratch, Solid};
 
 fn surface(samples: &Samples) -> PointSet {
     PointSet::new(&samples.points, &samples.normals, &samples.widths, &Options::default())

@@ -2,22 +2,12 @@
 
 mod common;
 
-use common::{Truth, chord, surface};
+use common::{Truth, all, chord, surface};
 use glam::DVec3;
-use pss::geom::{Interval, Ray};
-use pss::solid::point_set::{Options, PointSet};
-use pss::solid::{Body, Crossing, Scratch, Solid};
+use pss::geom::Ray;
+use pss::solid::point_set::Options;
+use pss::solid::{Body, Crossing, Scratch};
 use rayon::prelude::*;
-
-fn all(set: &PointSet, ray: &Ray, scratch: &mut Scratch) -> Vec<Crossing> {
-    let mut out = Vec::new();
-    let mut lo = f64::NEG_INFINITY;
-    while lo < f64::INFINITY {
-        let answer = set.crossings(ray, Interval::new(lo, f64::INFINITY), scratch, &mut out);
-        lo = answer.range.hi;
-    }
-    out
-}
 
 struct Figures {
     rms: f64,

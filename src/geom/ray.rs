@@ -2,6 +2,8 @@
 
 use glam::{DAffine3, DVec3};
 
+use crate::num::hash::Stream;
+
 /// A line with a direction: points `origin + t dir`. `dir` is not normalised, so `t` survives affine maps.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Ray {
@@ -15,6 +17,13 @@ impl Ray {
     /// A ray. Adding zero turns a component of -0.0 into +0.0, so that mirrored rays take the same branches.
     pub fn new(origin: DVec3, dir: DVec3) -> Ray {
         Ray { origin, dir: dir + DVec3::ZERO }
+    }
+
+    /// A uniform random chord of a sphere, in the measure of lines: through two independent points of it, which it
+    /// meets at `t = 0` and `t = 1`.
+    pub fn chord(stream: &mut Stream, center: DVec3, radius: f64) -> Ray {
+        let (a, b) = (stream.direction(), stream.direction());
+        Ray::new(center + radius * a, radius * (b - a))
     }
 
     /// The point at `t`.

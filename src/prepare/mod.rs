@@ -54,7 +54,7 @@ pub struct Prepared {
     pub inputs: Vec<PathBuf>,
     /// The work of measuring and sampling.
     pub counts: Counts,
-    /// Seconds spent on reading clouds and making samples of them, if the caller's clock was lent; else zero.
+    /// What was found about each scan.
     pub scans: Vec<ScanReport>,
 }
 

@@ -71,7 +71,11 @@ pub(super) fn sample(object: &Object, bounds: &Aabb, sampling: &Sampling) -> Res
             .into_par_iter()
             .with_min_len(64)
             .map_init(Scratch::default, |scratch, i| {
-                crossings(object, &chord(sampling.seed, first + i as u64, center, radius), scratch)
+                crossings(
+                    object,
+                    &Ray::chord(&mut Stream::new(mix(sampling.seed) ^ (first + i as u64)), center, radius),
+                    scratch,
+                )
             })
             .collect();
         candidates.extend(found.into_iter().flatten());
@@ -98,13 +102,6 @@ fn noisy(kept: impl Iterator<Item = Candidate>, sampling: &Sampling) -> Cloud {
         cloud.normals.get_or_insert_default().push(normal);
     }
     cloud
-}
-
-/// A uniform chord of a sphere: through two independent points of it.
-fn chord(seed: u64, i: u64, center: DVec3, radius: f64) -> Ray {
-    let mut stream = Stream::new(mix(seed) ^ i);
-    let (a, b) = (stream.direction(), stream.direction());
-    Ray::new(center + radius * a, radius * (b - a))
 }
 
 fn crossings(object: &Object, ray: &Ray, scratch: &mut Scratch) -> Vec<Candidate> {

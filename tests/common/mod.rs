@@ -101,7 +101,20 @@ pub fn surface(
 
 /// The `i`-th random chord of a sphere.
 pub fn chord(i: u64, center: DVec3, radius: f64) -> pss::geom::Ray {
-    let mut stream = pss::num::hash::Stream::new(i ^ 0x5eed);
-    let (a, b): (DVec3, DVec3) = (stream.direction(), stream.direction());
-    pss::geom::Ray::new(center + radius * a, radius * (b - a))
+    pss::geom::Ray::chord(&mut pss::num::hash::Stream::new(i ^ 0x5eed), center, radius)
+}
+
+/// All crossings of a line, asked for until the answers reach its end.
+pub fn all(
+    set: &pss::solid::point_set::PointSet,
+    ray: &pss::geom::Ray,
+    scratch: &mut pss::solid::Scratch,
+) -> Vec<pss::solid::Crossing> {
+    use pss::{geom::Interval, solid::Solid};
+    let mut out = Vec::new();
+    let mut lo = f64::NEG_INFINITY;
+    while lo < f64::INFINITY {
+        lo = set.crossings(ray, Interval::new(lo, f64::INFINITY), scratch, &mut out).range.hi;
+    }
+    out
 }

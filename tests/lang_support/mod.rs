@@ -132,3 +132,17 @@ pub fn scene(text: &str) -> Scene {
         Err(errors) => panic!("{}", pss::report::text(&errors, &sources, false)),
     }
 }
+
+/// A test that a scene is answered with exactly this text.
+#[allow(unused_macros)]
+macro_rules! says {
+    ($claim:ident: $scene:expr, $text:expr) => {
+        says! { $claim: $scene, -D &[], $text }
+    };
+    ($claim:ident: $scene:expr, -D $defines:expr, $text:expr) => {
+        #[test]
+        fn $claim() {
+            assert_eq!($crate::lang_support::complaints($scene, $defines).trim_end(), $text.trim());
+        }
+    };
+}

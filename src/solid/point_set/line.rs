@@ -57,6 +57,12 @@ impl LineScratch {
     }
 }
 
+/// The trust spheres of the band at or after arc length `s`.
+fn spheres_at<'a>(bands: &[Band], reaches: &'a [Reach], s: f64) -> &'a [Reach] {
+    let band = bands.partition_point(|b| b.range.hi < s).min(bands.len().max(1) - 1);
+    bands.get(band).map_or(&[][..], |b| &reaches[b.spheres[0]..b.spheres[1]])
+}
+
 /// Where a walk along the line stands.
 #[derive(Clone, Copy, Debug)]
 struct Place {
@@ -130,27 +136,20 @@ impl PointSet {
         }
         if crossing.part == part::WALL {
             // A wall stands where definitions disagree: the nearest sample tells best how the surface lies.
-            let nearest = self.nearest_sample(&unit, s, PointSet::spheres_at(line, s));
+            let nearest = self.nearest_sample(&unit, s, spheres_at(&line.bands, &line.reaches, s));
             let normal = self.samples.normals[nearest];
             return if 0.0 < normal.dot(facing) { normal } else { facing };
         }
         let before = line.room.projections;
-        let band = line.bands.partition_point(|b| b.range.hi < s).min(line.bands.len().max(1) - 1);
-        let spheres = line.bands.get(band).map_or(&[][..], |b| &line.reaches[b.spheres[0]..b.spheres[1]]);
+        let spheres = spheres_at(&line.bands, &line.reaches, s);
         let gradient = self.gradient_at(&unit, s, spheres, &mut line.room);
         counts.projections += line.room.projections - before;
         gradient.and_then(DVec3::try_normalize).unwrap_or(facing)
     }
 
-    /// The trust spheres of the band at or after arc length `s`.
-    fn spheres_at(line: &LineScratch, s: f64) -> &[Reach] {
-        let band = line.bands.partition_point(|b| b.range.hi < s).min(line.bands.len().max(1) - 1);
-        line.bands.get(band).map_or(&[][..], |b| &line.reaches[b.spheres[0]..b.spheres[1]])
-    }
-
     /// The width of the sample nearest to arc length `s`.
     fn width_near(&self, unit: &Ray, s: f64, line: &LineScratch) -> f64 {
-        self.samples.widths[self.nearest_sample(unit, s, PointSet::spheres_at(line, s))]
+        self.samples.widths[self.nearest_sample(unit, s, spheres_at(&line.bands, &line.reaches, s))]
     }
 
     /// This thread's knowledge of the line, begun afresh where the line is another.

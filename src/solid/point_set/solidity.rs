@@ -1,6 +1,5 @@
 //! Whether a surface of points has an inside: measured, not believed.
 
-use glam::DVec3;
 use rayon::prelude::*;
 
 use super::PointSet;
@@ -66,9 +65,6 @@ impl PointSet {
 
     /// The `i`-th chord.
     fn chord(&self, i: u64) -> Ray {
-        let mut stream = Stream::new(i);
-        let (center, radius) = (self.bounds.center(), 0.5 * self.bounds.diagonal());
-        let (a, b): (DVec3, DVec3) = (stream.direction(), stream.direction());
-        Ray::new(center + radius * a, radius * (b - a))
+        Ray::chord(&mut Stream::new(i), self.bounds.center(), 0.5 * self.bounds.diagonal())
     }
 }
