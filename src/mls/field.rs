@@ -29,6 +29,9 @@ pub enum Stray {
     /// The normals of the samples do not say which side is out.
     #[error("sides undecided")]
     Undecided,
+    /// The samples end before this point.
+    #[error("past the end of the samples")]
+    Ended,
     /// The neighbours gathered do not reach far enough: gather wider and ask again.
     #[error("neighbours out of reach")]
     OutOfReach,

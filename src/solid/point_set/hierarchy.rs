@@ -99,6 +99,36 @@ impl Hierarchy {
         }
     }
 
+    /// The sample whose trust sphere holds a point and to which the point is nearest in that sample's own widths
+    /// (ties by index).
+    pub fn nearest(&self, at: DVec3) -> Option<usize> {
+        let mut best = (1.0, usize::MAX);
+        let mut stack = [0u32; 64];
+        let mut depth = usize::from(!self.nodes.is_empty());
+        while 0 < depth {
+            depth -= 1;
+            let index = stack[depth] as usize;
+            let node = &self.nodes[index];
+            if best.0 * node.widest * node.widest < node.bounds.distance_squared(at) {
+                continue;
+            }
+            if node.count == 0 {
+                stack[depth] = node.start;
+                stack[depth + 1] = index as u32 + 1;
+                depth += 2;
+                continue;
+            }
+            for i in node.start as usize..(node.start + node.count) as usize {
+                let h = self.widths[i];
+                let candidate = ((self.points[i] - at).length_squared() / (h * h), i);
+                if candidate < best {
+                    best = candidate;
+                }
+            }
+        }
+        (best.1 != usize::MAX).then_some(best.1)
+    }
+
     /// Gathers every sample whose support (`support` is that of the weight, in squared widths) reaches the ball of
     /// `reach` widths about the foot of a guess, in the order of storage.
     pub fn gather(&self, guess: &Guess, reach: f64, support: f64, out: &mut Neighbours) {

@@ -4,6 +4,7 @@
 //! of F in a band; [`mod@line`] strings bands and gaps together to states; [`caps`] closes holes by the winding number.
 
 mod caps;
+mod field;
 mod hierarchy;
 mod line;
 mod probe;
@@ -16,6 +17,7 @@ use std::sync::{Arc, OnceLock};
 use glam::{DAffine3, DVec3};
 
 pub use caps::Closure;
+pub use field::FieldScratch;
 pub use hierarchy::{Hierarchy, Reach};
 pub use line::LineScratch;
 pub use solidity::Solidity;

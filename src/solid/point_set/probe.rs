@@ -57,7 +57,7 @@ impl PointSet {
 
     /// Whether the samples have ended at a point: beyond the rim of a hole that is capped, and beyond the edge of a
     /// wall so thin and sharp that its far side was left out. There the polynomial only extrapolates.
-    fn has_ended(&self, sample: usize, field: &Sample) -> bool {
+    pub(super) fn has_ended(&self, sample: usize, field: &Sample) -> bool {
         // Where less than this share of the weight faces another way nothing has been left out.
         const WHOLE: f64 = 0.99;
         (field.kept < WHOLE || self.near_rim(sample)) && self.kernel.edge() < field.drift
@@ -98,13 +98,13 @@ impl PointSet {
     ) -> Result<Sample, Stray> {
         let degree = self.degree;
         if self.mixed {
-            self.field(&Evaluator { weight, facing: AnyWay, degree }, at, sample, room)
+            self.field_by(&Evaluator { weight, facing: AnyWay, degree }, at, sample, room)
         } else {
-            self.field(&Evaluator { weight, facing: SameWay, degree }, at, sample, room)
+            self.field_by(&Evaluator { weight, facing: SameWay, degree }, at, sample, room)
         }
     }
 
-    fn field<W: Weight, A: Facing>(
+    fn field_by<W: Weight, A: Facing>(
         &self,
         evaluator: &Evaluator<W, A>,
         at: DVec3,
