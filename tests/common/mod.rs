@@ -13,13 +13,53 @@ pub enum Truth {
     Torus,
     /// |p| = r(p / |p|), star-shaped.
     Blob,
+    /// All points [`SLAB`] away from a disc of radius 1: two parallel faces, three widths of 10,000 samples apart,
+    /// with a round rim.
+    Slab,
 }
+
+/// Half the thickness of the slab.
+pub const SLAB: f64 = 0.105;
 
 impl Truth {
     pub const ALL: [Truth; 3] = [Truth::Sphere, Truth::Torus, Truth::Blob];
+    pub const CLOSED: [Truth; 4] = [Truth::Sphere, Truth::Torus, Truth::Slab, Truth::Blob];
+
+    /// Of the surface; the blob's to a percent.
+    pub fn area(self) -> f64 {
+        use std::f64::consts::PI;
+        match self {
+            Truth::Sphere => 4.0 * PI,
+            Truth::Torus => 1.6 * PI * PI,
+            Truth::Blob => 14.1,
+            Truth::Slab => 2.0 * PI + 2.0 * PI * PI * SLAB + 4.0 * PI * SLAB * SLAB,
+        }
+    }
 
     fn blob_radius(d: DVec3) -> f64 {
         1.0 + 0.12 * (3.0 * d.x + 1.0).sin() * (4.0 * d.y).sin() + 0.10 * (5.0 * d.z + 2.0 * d.x).cos()
+    }
+
+    /// The place at a share `u` of the area, from the middle of the lower face over the rim to that of the upper.
+    fn slab_sample(u: f64, (cos, sin): (f64, f64)) -> (DVec3, DVec3) {
+        use std::f64::consts::PI;
+        let area = u * Truth::Slab.area();
+        let top = Truth::Slab.area() - PI;
+        let (radius, normal) = if area < PI {
+            ((area / PI).sqrt(), [0.0, -1.0])
+        } else if top < area {
+            (((Truth::Slab.area() - area) / PI).sqrt(), [0.0, 1.0])
+        } else {
+            // The rim's area up to latitude w is 2 pi a (w + pi / 2 + a (sin w + 1)) for minor radius a.
+            let part = (area - PI) / (2.0 * PI * SLAB);
+            let mut w = 0.0;
+            for _ in 0..60 {
+                w -= (w + 0.5 * PI + SLAB * (f64::sin(w) + 1.0) - part) / (1.0 + SLAB * f64::cos(w));
+            }
+            (1.0, [w.cos(), w.sin()])
+        };
+        let n = DVec3::new(normal[0] * cos, normal[0] * sin, normal[1]);
+        (DVec3::new(radius * cos, radius * sin, 0.0) + SLAB * n, n)
     }
 
     /// Zero on the surface, positive outside; a distance for sphere and torus.
@@ -28,6 +68,7 @@ impl Truth {
             Truth::Sphere => p.length() - 1.0,
             Truth::Torus => (p.x.hypot(p.z) - 1.0).hypot(p.y) - 0.4,
             Truth::Blob => p.length() - Truth::blob_radius(p / p.length()),
+            Truth::Slab => (p.x.hypot(p.y) - 1.0).max(0.0).hypot(p.z) - SLAB,
         }
     }
 
@@ -47,6 +88,7 @@ impl Truth {
         match self {
             Truth::Sphere => 12f64.sqrt(),
             Truth::Torus => (2.0 * 2.8f64.powi(2) + 0.8f64.powi(2)).sqrt(),
+            Truth::Slab => ((2.0 + 2.0 * SLAB).powi(2) * 2.0 + (2.0 * SLAB).powi(2)).sqrt(),
             Truth::Blob => {
                 let (p, _) = self.cloud(20_000);
                 pss::geom::Aabb::of_points(p).diagonal()
@@ -70,6 +112,9 @@ impl Truth {
                     let c = 1.0 + 0.4 * w.cos();
                     let p = DVec3::new(c * cos, 0.4 * w.sin(), c * sin);
                     return (p, DVec3::new(w.cos() * cos, w.sin(), w.cos() * sin));
+                }
+                if self == Truth::Slab {
+                    return Truth::slab_sample(u, (cos, sin));
                 }
                 let z = 1.0 - 2.0 * u;
                 let s = (1.0 - z * z).sqrt();

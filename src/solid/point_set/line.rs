@@ -9,8 +9,8 @@ use glam::DVec3;
 use super::PointSet;
 use super::caps::Cap;
 use super::hierarchy::Reach;
-use super::probe::{Probe, Room};
-use super::roots::{Findings, Piece, Search, WALL};
+use super::probe::Room;
+use super::roots::{Findings, Piece, Search, Stretch, WALL};
 use crate::geom::{Interval, Ray};
 use crate::solid::{Answer, Body, Counts, Crossing, Scratch};
 
@@ -47,7 +47,7 @@ pub struct LineScratch {
     bands: Vec<Band>,
     found: Vec<Findings>,
     room: Room,
-    stack: Vec<(Probe, Probe)>,
+    stack: Vec<Stretch>,
     caps: Vec<Cap>,
 }
 

@@ -1,9 +1,10 @@
 //! The surface of points as a solid: every crossing of a ray, straight from the samples.
 //!
 //! [`hierarchy`] gives the trust spheres on a line; overlapping ones merge into bands; [`roots`] isolates every root
-//! of F in a band; [`mod@line`] strings bands and gaps together to states; [`caps`] closes holes by the winding number.
+//! of F in a band by [`certificate`]s; [`mod@line`] strings bands and gaps together to states; [`caps`] closes holes by the winding number.
 
 mod caps;
+mod certificate;
 mod field;
 mod hierarchy;
 mod line;
