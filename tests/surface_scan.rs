@@ -133,6 +133,7 @@ struct Tally {
     crossings: u64,
     missed: u64,
     extra: u64,
+    finer: u64,
     odd: u64,
     beyond: u64,
     loose: u64,
@@ -148,6 +149,7 @@ impl Tally {
         self.crossings += o.crossings;
         self.missed += o.missed;
         self.extra += o.extra;
+        self.finer += o.finer;
         self.odd += o.odd;
         self.beyond += o.beyond;
         self.loose += o.loose;
@@ -157,6 +159,15 @@ impl Tally {
         self.projections += o.projections;
         self
     }
+}
+
+/// Whether F between the crossings has the signs that they say.
+fn alternates(set: &PointSet, line: &Ray, length: f64, found: &[Crossing], field: &mut FieldScratch) -> bool {
+    found.windows(2).all(|pair| {
+        let middle = 0.5 * (pair[0].t + pair[1].t) * length;
+        let agrees = at(set, line, middle, field).is_none_or(|f| (f[0] < 0.0) == pair[0].entering);
+        pair[0].entering != pair[1].entering && agrees
+    })
 }
 
 /// One line, crossings against the scan.
@@ -182,6 +193,11 @@ fn compare(set: &PointSet, ray: &Ray, finest: f64, field: &mut FieldScratch, scr
     // A minimum of |F| so near zero that rounding says whether there is a root belongs to neither.
     if dense.closest < 1e-13 * finest {
         tally.ambiguous = 1;
+        return tally;
+    }
+    if dense.roots.len() < found.len() && alternates(set, &line, length, &found, field) {
+        // The scan stepped over a pair; F has the signs that the crossings say.
+        tally.finer = (found.len() - dense.roots.len()) as u64;
         return tally;
     }
     if found.len() != dense.roots.len() {

@@ -5,7 +5,7 @@
 //! - ends of one sign: F stays above the parabolas `F_a + F'_a x - M x^2/2` from either end; both are concave, so the larger
 //!   of them is lowest where they meet or at the ends;
 //! - ends of opposite signs: where |F'| > M L/2 at both ends, with the sign of the change, F' cannot vanish (each end
-//!   answers for its half), so there is one root.
+//!   answers for its half), so there is one root; ends of one sign with such slopes have none between.
 //!
 //! Fourth derivative, |F''''| <= K: F differs from the cubic H through both ends' values and slopes by at most K L^4 / 384,
 //! and F' from H' by at most K L^3 sqrt(3)/216 (Birkhoff and Priver 1967). So a line that runs along the surface a depth e
@@ -76,10 +76,13 @@ impl Cell {
             return Verdict::Flat;
         }
         let m = self.curvature();
+        let monotone = self.slopes_hold(m) || self.cubic_slopes_hold();
         if self.changes() {
-            let one = self.slopes_hold(m) || self.cubic_slopes_hold();
             let share = self.a[0] / (self.a[0] - self.b[0]);
-            return if one { Verdict::One } else { Verdict::Split(share) };
+            return if monotone { Verdict::One } else { Verdict::Split(share) };
+        }
+        if monotone {
+            return Verdict::Empty;
         }
         let (lowest, share) = self.lower_bound(m);
         if 0.0 < lowest {

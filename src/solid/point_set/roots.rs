@@ -114,9 +114,9 @@ impl Search<'_> {
                 (Some(fa), None) => {
                     open.get_or_insert((a.s, fa[0] < 0.0, self.out.roots.len()));
                     self.close(&mut open, &a, fa);
-                    self.out.failures += u64::from(b.stray);
+                    self.out.failures += u64::from(b.stray && ends_early(&a, fa));
                 }
-                (None, Some(_)) => self.out.failures += u64::from(a.stray),
+                (None, Some(fb)) => self.out.failures += u64::from(a.stray && ends_early(&b, fb)),
             }
             if self.stack.is_empty()
                 && let Some(fb) = b.f
@@ -252,6 +252,15 @@ impl Search<'_> {
         Root { s, err, shift: lo.1.abs().max(hi.1.abs()).min(err), entering, jump: false }
     }
 }
+
+/// Whether F is lost so near the surface that a crossing may be lost with it; farther off the tube just ends.
+fn ends_early(last: &Probe, f: [f64; 2]) -> bool {
+    f[0].abs() < TUBE_END * last.width
+}
+
+/// F is defined at least this many widths away from a surface that is sampled well: where normals agree the tube ends
+/// past one width.
+const TUBE_END: f64 = 0.7;
 
 /// Newton's steps in a bracket: a handful suffice; more say that F is not what its slopes promise.
 const MAX_STEPS: usize = 40;
