@@ -57,7 +57,7 @@ const SHORTEST: f64 = 1e-7;
 /// Where F is undefined at an end, the end of its domain is found to this many widths.
 const DOMAIN: f64 = 0.02;
 /// Cells undefined at both ends are searched down to this many widths for a domain between.
-const BLIND: f64 = 0.5;
+const BLIND: f64 = 0.2;
 /// A cell is never longer than this many widths: neighbours and M belong to one place.
 const LONGEST: f64 = 2.0;
 /// A split leaves at least this share on either side.
@@ -99,6 +99,8 @@ impl Search<'_> {
         self.stack.push(Stretch { a, b, fourth: f64::INFINITY });
         // The piece being built: where it began, its state there, its first root.
         let mut open: Option<(f64, bool, usize)> = None;
+        // Where F was last lost, because the projection failed.
+        let mut lost: Option<(Probe, [f64; 2])> = None;
         while let Some(Stretch { a, b, fourth }) = self.stack.pop() {
             match (a.f, b.f) {
                 (Some(fa), Some(fb)) => {
@@ -115,8 +117,14 @@ impl Search<'_> {
                     open.get_or_insert((a.s, fa[0] < 0.0, self.out.roots.len()));
                     self.close(&mut open, &a, fa);
                     self.out.failures += u64::from(b.stray && ends_early(&a, fa));
+                    lost = b.stray.then_some((a, fa));
                 }
-                (None, Some(fb)) => self.out.failures += u64::from(a.stray && ends_early(&b, fb)),
+                (None, Some(fb)) => {
+                    self.out.failures += u64::from(a.stray && ends_early(&b, fb));
+                    if let Some(before) = lost.take().filter(|_| a.stray) {
+                        self.bridge(before, (b, fb), &mut open);
+                    }
+                }
             }
             if self.stack.is_empty()
                 && let Some(fb) = b.f
@@ -133,6 +141,30 @@ impl Search<'_> {
                 range: Interval::new(lo, at.s),
                 inside: [inside, f[0] < 0.0],
                 roots: [first, self.out.roots.len()],
+            });
+        }
+    }
+
+    /// Takes a stretch without F for a jump, where it is no longer than a jump's wall is uncertain: the piece before it
+    /// goes on after it, and a change of sign over it is a crossing.
+    fn bridge(
+        &mut self,
+        (a, fa): (Probe, [f64; 2]),
+        (b, fb): (Probe, [f64; 2]),
+        open: &mut Option<(f64, bool, usize)>,
+    ) {
+        if WALL * a.width.min(b.width) < b.s - a.s {
+            return;
+        }
+        let Some(piece) = self.out.pieces.pop() else { return };
+        *open = Some((piece.range.lo, piece.inside[0], piece.roots[0]));
+        if (fa[0] < 0.0) != (fb[0] < 0.0) {
+            self.out.roots.push(Root {
+                s: 0.5 * (a.s + b.s),
+                err: WALL * a.width.min(b.width),
+                shift: fa[0].abs().min(fb[0].abs()).min(b.s - a.s),
+                entering: fb[0] < fa[0],
+                jump: true,
             });
         }
     }
