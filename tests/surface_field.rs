@@ -58,3 +58,40 @@ fn the_gradient_agrees_with_differences_for_every_weight_and_degree() {
         check_gradient(Gaussian::for_tolerance(1e-12), SameWay, degree);
     }
 }
+
+/// Where samples are so few that the polynomial loses a degree, F goes over smoothly: its gradient agrees with
+/// differences, and no step of a walk jumps.
+#[test]
+fn f_stays_continuous_where_the_degree_falls() {
+    let (points, normals) = Truth::Torus.cloud(1500);
+    let spacing = (4.0 * 0.4 * std::f64::consts::PI.powi(2) / 1500.0).sqrt();
+    for (degree, factor) in [(1, 0.85), (2, 1.13), (3, 1.45), (4, 1.8)] {
+        let h = factor * spacing;
+        let near = brute(&points, &normals, |_| h, h);
+        let evaluator = Evaluator { weight: Compact, facing: SameWay, degree };
+        let (mut full, mut fallen) = (0, 0);
+        let mut worst: f64 = 0.0;
+        for (i, p) in probes(Truth::Torus, 300, 0.3 * h).into_iter().enumerate() {
+            let guess = |p: DVec3| Guess { foot: p, outward: Truth::Torus.gradient(p), width: h };
+            let at = |p: DVec3| evaluator.sample(&near, p, &guess(p));
+            let along = normals[i].any_orthonormal_vector();
+            // A walk of a tenth of a width in 200 steps.
+            let step = 0.1 * h / 200.0;
+            let walk: Vec<Sample> =
+                (0..200).filter_map(|k| at(p + along * (f64::from(k) * step)).ok()).collect();
+            for pair in walk.windows(2) {
+                full += usize::from(pair[0].degree == degree);
+                fallen += usize::from(pair[0].degree < degree);
+                let mean = 0.5 * (pair[0].gradient + pair[1].gradient).dot(along);
+                let jump = (pair[1].value - pair[0].value - mean * step).abs() / h;
+                worst = worst.max(jump);
+            }
+        }
+        println!(
+            "degree {degree}: {full} full, {fallen} fallen, largest step beside the gradient {worst:.1e} h"
+        );
+        assert!(100 < full && 100 < fallen, "degree {degree} is not tried");
+        // The trapezium's own error: a third derivative of some hundred over h^2 times step^3 / 12.
+        assert!(worst < 1e-6, "degree {degree}: {worst:e}");
+    }
+}

@@ -46,12 +46,14 @@ pub struct Sample {
     pub gradient: DVec3,
     /// Unit normal of the reference plane, outward.
     pub plane_normal: DVec3,
+    /// Unit normal of the polynomial over q, outward: the paper's, less exact than the gradient.
+    pub fit_normal: DVec3,
     /// How far the weighted mean of the samples lies from q within the plane, in local units: near zero inside
     /// a sampled surface, 0.51 (compact weight) or 0.56 (Gaussian) widths at its straight edge.
     pub drift: f64,
     /// The share of the weight that is left after samples facing another way are left out.
     pub kept: f64,
-    /// The degree that the samples allowed.
+    /// The degree that the samples allowed; terms fade before they go.
     pub degree: usize,
 }
 
@@ -154,6 +156,7 @@ impl<W: Weight, A: Facing> Evaluator<W, A> {
             value: sign * (plane.t + fit.c[0]) * near.unit,
             gradient: sign * inward,
             plane_normal: -sign * n,
+            fit_normal: -sign * (n - fit.c[1] * basis[0] - fit.c[2] * basis[1]).normalize(),
             drift: (fit.drift[0] * fit.drift[0] + fit.drift[1] * fit.drift[1]).sqrt() / k,
             kept: fit.kept,
             degree: fit.degree,

@@ -8,8 +8,8 @@
 //! dc_0 = sum (dw lambda + w a0 . dbeta) rho + w lambda (dz - c . dbeta)
 //! ```
 //!
-//! which is linear in the displacement of q and in dn; both are summed over the samples once. All vectors here are
-//! written in the basis (e1, e2, n), in which a sample stands at x = (u, v, z) from q.
+//! and, where ridges fade terms by what sum w and sum w^2 say, by sum (S + 2 w S') dw more. All of it is linear in the
+//! displacement of q and in dn; both are summed over the samples once. All vectors here are written in the basis (e1, e2, n), in which a sample stands at x = (u, v, z) from q.
 
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use glam::DVec3;
@@ -141,7 +141,8 @@ fn forms_in<S: Simd, W: Weight, A: Facing, const D: usize>(
         let [[shape, shape_u, shape_v], [g, g_u, g_v]] = evaluate::<_, D>(simd, &fit.a0, &fit.c, u, v);
         let residual = s - g;
         let (w_res, w_shape) = (w * residual, w * shape);
-        let pull = w1 * shape * residual * 2.0;
+        let by_weight = shape * residual + (w * (2.0 * fit.fading[1]) + fit.fading[0]);
+        let pull = w1 * by_weight * 2.0;
         let by_u = w_res * shape_u - w_shape * g_u;
         let by_v = w_res * shape_v - w_shape * g_v;
         gx += pull * u + by_u;
@@ -151,7 +152,7 @@ fn forms_in<S: Simd, W: Weight, A: Facing, const D: usize>(
         h2 += w_shape * v - by_v * s;
         if let Some((w_turn, m1, m2)) = by_facing {
             // dw = theta phi' dc with dc = -m . dn.
-            let pull = w_turn * shape * residual;
+            let pull = w_turn * by_weight;
             h1 -= pull * m1;
             h2 -= pull * m2;
         }

@@ -4,6 +4,11 @@
 //! the moments sum w u^a v^b. In units of the local width its condition is at most some hundreds (degree 4, one
 //! spacing), so Cholesky is exact enough; a polynomial that the samples do not determine is replaced by one of
 //! lower degree, which is reported.
+//!
+//! Where samples are few, the terms of the highest degrees fade before they go: (sum w)^2 / sum w^2 = E effective samples
+//! carry a ridge `rho_k = sum w * mu(E / n_k)` on the squares of the terms of total degree k, n_k the number of coefficients up to k, with
+//! mu zero from 1.5 effective samples a coefficient on, and infinite at 1.2. The terms then vanish like the cube of
+//! what is missing, so F keeps two derivatives, and `tests/surface_field.rs` holds grad F against differences there.
 
 use super::MAX_DEGREE;
 use super::neighbours::Neighbours;
@@ -46,6 +51,39 @@ pub(super) struct Fit {
     pub vote: f64,
     /// The share of the weight that is left after samples facing another way are left out.
     pub kept: f64,
+    /// How c_0 falls with the ridges, per change of sum w and of sum w^2.
+    pub fading: [f64; 2],
+}
+
+/// Effective samples a coefficient at which a term is gone, and from which on it is whole.
+const GONE: f64 = 1.2;
+const WHOLE: f64 = 1.5;
+
+/// The ridge of u^a v^b beside that of u^k: one over the binomial coefficient of a + b = k over a, so that turning the
+/// basis within the plane changes nothing.
+const SHARES: [f64; MAX_COEFFICIENTS] = [
+    1.0, //
+    1.0,
+    1.0, //
+    1.0,
+    0.5,
+    1.0, //
+    1.0,
+    1.0 / 3.0,
+    1.0 / 3.0,
+    1.0, //
+    1.0,
+    0.25,
+    1.0 / 6.0,
+    0.25,
+    1.0,
+];
+
+/// mu and its derivative with respect to E / n_k, for more than [`GONE`].
+fn ridge(per_coefficient: f64) -> [f64; 2] {
+    let (short, left) = ((WHOLE - per_coefficient).max(0.0), per_coefficient - GONE);
+    let x = short / left;
+    [x * x * x, -3.0 * x * x * (WHOLE - GONE) / (left * left) * f64::from(u8::from(0.0 < short))]
 }
 
 /// Fits at a settled plane.
@@ -66,37 +104,63 @@ pub(super) fn fit<W: Weight, A: Facing>(
         _ => sums::<W, A, MAX_DEGREE>(weight, near, r, plane, basis),
     };
     let total = sums.moments[0];
-    // A fit needs this many effective samples per coefficient, (sum w)^2 / sum w^2 being their number.
-    const SAMPLES_PER_COEFFICIENT: f64 = 1.5;
     // Pivots below this share of their diagonal say that the samples do not determine the coefficient.
     const PIVOT: f64 = 1e-10;
     let effective = total * total / sums.squared;
-    for degree in (0..=degree.min(MAX_DEGREE)).rev() {
+    let enough = |d: usize| d == 0 || GONE * coefficients(d) as f64 * (1.0 + f64::EPSILON) < effective;
+    for degree in (0..=degree.min(MAX_DEGREE)).rev().filter(|d| enough(*d)) {
         let n = coefficients(degree);
-        if 0 < degree && effective < SAMPLES_PER_COEFFICIENT * n as f64 {
-            continue;
-        }
         let mut a = [[0.0; MAX_COEFFICIENTS]; MAX_COEFFICIENTS];
         for (i, (ia, ib)) in exponents(degree).enumerate() {
             for (j, (ja, jb)) in exponents(degree).enumerate().take(i + 1) {
                 a[i][j] = sums.moments[index(ia + ja, ib + jb)];
             }
+            let k = ia + ib;
+            if 0 < k {
+                a[i][i] += total * ridge(effective / coefficients(k) as f64)[0] * SHARES[i];
+            }
         }
         if let Some(factor) = Cholesky::new(&a, n, PIVOT) {
             let mut unit = [0.0; MAX_COEFFICIENTS];
             unit[0] = 1.0;
+            let (c, a0) = (factor.solve(&sums.heights), factor.solve(&unit));
             return Ok(Fit {
                 degree,
                 basis,
-                c: factor.solve(&sums.heights),
-                a0: factor.solve(&unit),
+                c,
+                a0,
                 drift: sums.drift.map(|d| d / total),
                 vote: sums.vote / total,
                 kept: total / sums.whole,
+                fading: fading(degree, &c, &a0, total, sums.squared),
             });
         }
     }
     Err(Stray::IllConditioned)
+}
+
+/// The change of c_0 by the ridges alone is -sum_k G_k d(rho_k), G_k the sum of a0 c over the terms of degree k.
+fn fading(
+    degree: usize,
+    c: &[f64; MAX_COEFFICIENTS],
+    a0: &[f64; MAX_COEFFICIENTS],
+    total: f64,
+    squared: f64,
+) -> [f64; 2] {
+    let effective = total * total / squared;
+    let mut out = [0.0; 2];
+    for k in 1..=degree {
+        let n = coefficients(k) as f64;
+        let [mu, slope] = ridge(effective / n);
+        if mu == 0.0 {
+            continue;
+        }
+        let g: f64 = (coefficients(k - 1)..coefficients(k)).map(|i| SHARES[i] * a0[i] * c[i]).sum();
+        // rho = T mu(T^2 / (Q n)).
+        out[0] -= g * (mu + 2.0 * effective * slope / n);
+        out[1] += g * effective * slope * total / (n * squared);
+    }
+    out
 }
 
 /// The exponents of u and v in the order of [`index`].
