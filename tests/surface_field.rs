@@ -5,7 +5,7 @@ mod common;
 use common::Truth;
 use glam::DVec3;
 use pss::mls::{
-    AnyWay, Compact, Evaluator, Facing, Gaussian, Guess, Neighbours, SameWay, Sample, Stray, Weight,
+    AnyWay, Compact, Evaluator, Facing, Form, Gaussian, Guess, Neighbours, SameWay, Sample, Stray, Weight,
 };
 use pss::num::hash::Stream;
 
@@ -30,12 +30,12 @@ fn probes(truth: Truth, count: usize, within: f64) -> Vec<DVec3> {
         .collect()
 }
 
-fn check_gradient(weight: impl Weight, facing: impl Facing, degree: usize) {
+fn check_gradient(weight: impl Weight, facing: impl Facing, degree: usize, form: Form) {
     let (points, normals) = Truth::Torus.cloud(1500);
     let h = 2.0 * (4.0 * 0.4 * std::f64::consts::PI.powi(2) / 1500.0).sqrt();
     // Widths that differ from sample to sample: the derivative must use each sample's own.
     let near = brute(&points, &normals, |p| h * (1.0 + 0.2 * p.x), h);
-    let evaluator = Evaluator { weight, facing, degree };
+    let evaluator = Evaluator { weight, facing, degree, form };
     for p in probes(Truth::Torus, 200, 0.5 * h) {
         let guess = Guess { foot: p, outward: Truth::Torus.gradient(p), width: h };
         let at = |p: DVec3| -> Result<Sample, Stray> { evaluator.sample(&near, p, &guess) };
@@ -52,11 +52,40 @@ fn check_gradient(weight: impl Weight, facing: impl Facing, degree: usize) {
 #[test]
 fn the_gradient_agrees_with_differences_for_every_weight_and_degree() {
     for degree in 0..=4 {
-        check_gradient(Compact, AnyWay, degree);
-        check_gradient(Compact, SameWay, degree);
-        check_gradient(Gaussian::for_tolerance(1e-12), AnyWay, degree);
-        check_gradient(Gaussian::for_tolerance(1e-12), SameWay, degree);
+        for form in [Form::Free, Form::Levin] {
+            check_gradient(Compact, AnyWay, degree, form);
+            check_gradient(Compact, SameWay, degree, form);
+            check_gradient(Gaussian::for_tolerance(1e-12), AnyWay, degree, form);
+            check_gradient(Gaussian::for_tolerance(1e-12), SameWay, degree, form);
+        }
     }
+}
+
+/// r - t n - g n projected again, in widths: zero for a projection.
+fn defect(form: Form, r: DVec3, h: f64, near: &Neighbours) -> f64 {
+    let evaluator = Evaluator { weight: Compact, facing: AnyWay, degree: 2, form };
+    let project = |r: DVec3| {
+        let guess = Guess { foot: r, outward: Truth::Torus.gradient(r), width: h };
+        let f = evaluator.sample(near, r, &guess).unwrap();
+        r - f.value * f.plane_normal
+    };
+    let once = project(r);
+    (project(once) - once).length() / h
+}
+
+#[test]
+fn levins_plane_makes_a_projection_and_the_free_one_nearly() {
+    let n = 6000;
+    let (points, normals) = Truth::Torus.cloud(n);
+    let h = 2.0 * (Truth::Torus.area() / n as f64).sqrt();
+    let near = brute(&points, &normals, |_| h, h);
+    let worst = |form: Form| {
+        probes(Truth::Torus, 120, 0.4 * h).into_iter().map(|r| defect(form, r, h, &near)).fold(0.0, f64::max)
+    };
+    let (free, levin) = (worst(Form::Free), worst(Form::Levin));
+    println!("projected twice: free {free:.1e} h, Levin {levin:.1e} h");
+    assert!(levin < 1e-10, "{levin:e}");
+    assert!(free < 1e-4 && 100.0 * levin < free, "{free:e}");
 }
 
 /// Where samples are so few that the polynomial loses a degree, F goes over smoothly: its gradient agrees with
@@ -68,7 +97,7 @@ fn f_stays_continuous_where_the_degree_falls() {
     for (degree, factor) in [(1, 0.85), (2, 1.13), (3, 1.45), (4, 1.8)] {
         let h = factor * spacing;
         let near = brute(&points, &normals, |_| h, h);
-        let evaluator = Evaluator { weight: Compact, facing: SameWay, degree };
+        let evaluator = Evaluator { weight: Compact, facing: SameWay, degree, form: Form::Free };
         let (mut full, mut fallen) = (0, 0);
         let mut worst: f64 = 0.0;
         for (i, p) in probes(Truth::Torus, 300, 0.3 * h).into_iter().enumerate() {

@@ -4,7 +4,7 @@
 //! F would have to change three times faster than a distance does), minimises every local minimum of |F|, and bisects
 //! every change of sign to the last bit.
 
-mod common;
+pub mod common;
 
 use common::{Truth, all, chord, surface};
 use glam::DVec3;
@@ -128,7 +128,7 @@ fn scan(set: &PointSet, line: &Ray, from: f64, to: f64, finest: f64, scratch: &m
 
 /// What chords of one cloud showed.
 #[derive(Debug, Default, Clone, Copy)]
-struct Tally {
+pub struct Tally {
     chords: u64,
     crossings: u64,
     missed: u64,
@@ -144,7 +144,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn add(mut self, o: Tally) -> Tally {
+    pub fn add(mut self, o: Tally) -> Tally {
         self.chords += o.chords;
         self.crossings += o.crossings;
         self.missed += o.missed;
@@ -171,7 +171,13 @@ fn alternates(set: &PointSet, line: &Ray, length: f64, found: &[Crossing], field
 }
 
 /// One line, crossings against the scan.
-fn compare(set: &PointSet, ray: &Ray, finest: f64, field: &mut FieldScratch, scratch: &mut Scratch) -> Tally {
+pub fn compare(
+    set: &PointSet,
+    ray: &Ray,
+    finest: f64,
+    field: &mut FieldScratch,
+    scratch: &mut Scratch,
+) -> Tally {
     scratch.counts = Default::default();
     let found: Vec<Crossing> = all(set, ray, scratch);
     let length = ray.dir.length();

@@ -12,7 +12,7 @@
 //! displacement of q and in dn; both are summed over the samples once. All vectors here are written in the basis (e1, e2, n), in which a sample stands at x = (u, v, z) from q.
 
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::neighbours::Neighbours;
 use super::plane::Plane;
@@ -20,6 +20,15 @@ use super::polynomial::{Fit, evaluate};
 use super::{Facing, MAX_DEGREE, Stray, Weight};
 use crate::num::cholesky::Cholesky;
 use crate::num::lanes::{Lanes, sum};
+
+/// How the plane answers a displacement of r.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Answers<'a> {
+    /// It stays a minimum of J, whose Hessian in the basis of the fit this is.
+    Minimum(&'a [[f64; 3]; 3]),
+    /// Columns in the basis (e1, e2, n), rows the turn of n along e1 and e2, and the change of t.
+    Given(DMat3),
+}
 
 /// Linear forms in the displacement of r, q and n, summed over the samples.
 struct Forms {
@@ -33,8 +42,7 @@ struct Forms {
     by_n: [f64; 2],
 }
 
-/// grad F in the frame of the world (F and r share their unit, so it has none). The Hessian is that of the plane, in the
-/// basis of the fit.
+/// grad F in the frame of the world (F and r share their unit, so it has none).
 ///
 /// Fails with [`Stray::Saddle`] where the plane is not a strict local minimum.
 pub(super) fn gradient<W: Weight, A: Facing>(
@@ -43,7 +51,7 @@ pub(super) fn gradient<W: Weight, A: Facing>(
     near: &Neighbours,
     r: DVec3,
     plane: &Plane,
-    hessian: &[[f64; 3]; 3],
+    answers: Answers,
     fit: &Fit,
 ) -> Result<DVec3, Stray> {
     let basis = fit.basis;
@@ -54,12 +62,17 @@ pub(super) fn gradient<W: Weight, A: Facing>(
         3 => forms::<W, A, 3>(weight, near, r, plane, basis, fit),
         _ => forms::<W, A, MAX_DEGREE>(weight, near, r, plane, basis, fit),
     };
-    // A minimum so flat that this many digits are lost is none.
-    const PIVOT: f64 = 1e-8;
-    let factor = Cholesky::new(hessian, 3, PIVOT).ok_or(Stray::Saddle)?;
-    let column = |j: usize| factor.solve(&[-f.m_n[0][j], -f.m_n[1][j], -f.m_t[j]]);
+    let columns: [[f64; 3]; 3] = match answers {
+        Answers::Minimum(hessian) => {
+            // A minimum so flat that this many digits are lost is none.
+            const PIVOT: f64 = 1e-8;
+            let factor = Cholesky::new(hessian, 3, PIVOT).ok_or(Stray::Saddle)?;
+            std::array::from_fn(|j| factor.solve(&[-f.m_n[0][j], -f.m_n[1][j], -f.m_t[j]]))
+        }
+        Answers::Given(response) => response.to_cols_array_2d(),
+    };
     let local: [f64; 3] = std::array::from_fn(|j| {
-        let [d1, d2, dt] = column(j);
+        let [d1, d2, dt] = columns[j];
         let turn = (f.by_n[0] - plane.t * f.by_x.x) * d1 + (f.by_n[1] - plane.t * f.by_x.y) * d2;
         dt * (1.0 - f.by_x.z) - f.by_x[j] + turn
     });

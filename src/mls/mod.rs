@@ -8,18 +8,19 @@
 //! J(n, t) = sum_i w_i (n . (p_i - r) - t)^2,   w_i = theta(|p_i - r - t n|^2 / h_i^2)
 //! ```
 //!
-//! (form A: both n and t free), q = r + t n, and g a bivariate polynomial fitted over that plane with the same
+//! (form A, [`Form::Free`]: both n and t free; [`Form::Levin`] is form B), q = r + t n, and g a bivariate polynomial fitted over that plane with the same
 //! weights. Then F(r) = t + g(0, 0), and the surface is F = 0. Here n points **into** the solid, so F is positive
 //! outside and grad F points outward.
 
 mod field;
 mod gradient;
+mod levin;
 mod neighbours;
 mod plane;
 mod polynomial;
 mod weight;
 
-pub use field::{Evaluator, Guess, Sample, Stray};
+pub use field::{Evaluator, Form, Guess, Sample, Stray};
 pub use neighbours::Neighbours;
 pub use weight::{AnyWay, Compact, Facing, Gaussian, SameWay, Weight};
 

@@ -3,6 +3,7 @@
 use super::point_set::Options;
 use super::table::{Build, Primitive};
 use crate::geom::tolerance;
+use crate::mls::Form;
 use crate::scene::{Call, Decl, Group, Kind, Param};
 
 /// The line of the table.
@@ -25,6 +26,11 @@ pub const PRIMITIVE: Primitive = Primitive {
                 Kind::Choice(&["same", "any"]),
                 "which samples weigh: those that face the same way, or all",
             ),
+            Param::named(
+                "plane",
+                Kind::Choice(&["free", "levin"]),
+                "the reference plane: of least squares with both normal and offset free, or Levin's",
+            ),
             Param::named("normals", Kind::Choice(&["file", "estimate"]), "where normals come from"),
             Param::named("tolerance", Kind::Positive, "relative to the size of the cloud (default 1e-9)"),
         ],
@@ -38,6 +44,7 @@ pub fn options(call: &Call) -> Options {
     Options {
         gaussian: call.text("kernel") == Some("gaussian"),
         mixed: call.text("facing") == Some("any"),
+        form: if call.text("plane") == Some("levin") { Form::Levin } else { Form::Free },
         degree: call.number("degree").map_or(2, |d| d as usize),
         tolerance: call.number("tolerance").unwrap_or(tolerance::POINTS),
     }

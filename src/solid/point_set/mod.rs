@@ -27,7 +27,7 @@ use crate::cloud::neighbours::Neighbours;
 use crate::cloud::winding::Winding;
 use crate::cloud::{AREA_NEIGHBOURS, AREA_REACH, areas};
 use crate::geom::{Aabb, Interval, Ray, tolerance};
-use crate::mls::{Compact, Gaussian};
+use crate::mls::{Compact, Form, Gaussian};
 use crate::solid::{Answer, Body, Crossing, Scratch, Solid};
 
 /// Which weight.
@@ -60,13 +60,15 @@ pub struct Options {
     pub degree: usize,
     /// Whether samples weigh whichever way they face; else the sides of a thin wall are kept apart.
     pub mixed: bool,
+    /// Which plane is the reference.
+    pub form: Form,
     /// Relative to the diagonal of the samples.
     pub tolerance: f64,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { gaussian: false, degree: 2, mixed: false, tolerance: tolerance::POINTS }
+        Options { gaussian: false, degree: 2, mixed: false, form: Form::Free, tolerance: tolerance::POINTS }
     }
 }
 
@@ -79,6 +81,7 @@ pub struct PointSet {
     kernel: Kernel,
     degree: usize,
     mixed: bool,
+    form: Form,
     /// A bound of the error along the normal, world length.
     tolerance: f64,
     /// How far two definitions of inside may disagree, world length: [`roots::WALL`] of the median width.
@@ -109,6 +112,7 @@ impl PointSet {
             kernel,
             degree: options.degree,
             mixed: options.mixed,
+            form: options.form,
             tolerance: options.tolerance * diagonal,
             grain: roots::WALL * median(widths),
             bounds,

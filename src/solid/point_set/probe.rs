@@ -96,11 +96,11 @@ impl PointSet {
         sample: usize,
         room: &mut Room,
     ) -> Result<Sample, Stray> {
-        let degree = self.degree;
+        let (degree, form) = (self.degree, self.form);
         if self.mixed {
-            self.field_by(&Evaluator { weight, facing: AnyWay, degree }, at, sample, room)
+            self.field_by(&Evaluator { weight, facing: AnyWay, degree, form }, at, sample, room)
         } else {
-            self.field_by(&Evaluator { weight, facing: SameWay, degree }, at, sample, room)
+            self.field_by(&Evaluator { weight, facing: SameWay, degree, form }, at, sample, room)
         }
     }
 
