@@ -49,6 +49,10 @@ pub struct Sample {
     pub plane_normal: DVec3,
     /// Unit normal of the polynomial over q, outward: the paper's, less exact than the gradient.
     pub fit_normal: DVec3,
+    /// q, the origin of the reference plane's frame, world position.
+    pub foot: DVec3,
+    /// Unit vector in the plane away from the weighted mean of the samples: over an edge, if there is one.
+    pub away: DVec3,
     /// How far the weighted mean of the samples lies from q within the plane, in local units: near zero inside
     /// a sampled surface, 0.51 (compact weight) or 0.56 (Gaussian) widths at its straight edge.
     pub drift: f64,
@@ -182,6 +186,8 @@ impl<W: Weight, A: Facing> Evaluator<W, A> {
             gradient: sign * inward,
             plane_normal: -sign * n,
             fit_normal: -sign * (n - fit.c[1] * basis[0] - fit.c[2] * basis[1]).normalize(),
+            foot: near.origin + (r + plane.t * n) * near.unit,
+            away: -(fit.drift[0] * basis[0] + fit.drift[1] * basis[1]).normalize_or_zero(),
             drift: (fit.drift[0] * fit.drift[0] + fit.drift[1] * fit.drift[1]).sqrt() / k,
             kept: fit.kept,
             degree: fit.degree,

@@ -84,6 +84,22 @@ impl Neighbours {
         }
     }
 
+    /// Whether a sample that faces like `outward` lies ahead of a point: within `reach` (world length) of it, at most 45
+    /// degrees off the unit vector `ahead`, and at least `clear` along it.
+    pub fn any_ahead(&self, from: DVec3, ahead: DVec3, outward: DVec3, clear: f64, reach: f64) -> bool {
+        let from = (from - self.origin) * self.per_unit;
+        let (clear, reach) = (clear * self.per_unit, reach * self.per_unit);
+        self.blocks.iter().any(|b| {
+            (0..LANES).any(|i| {
+                let x = DVec3::new(b.x[i], b.y[i], b.z[i]) - from;
+                let along = x.dot(ahead);
+                let square = x.length_squared();
+                let faces = 0.0 < outward.dot(DVec3::new(b.nx[i], b.ny[i], b.nz[i]));
+                faces && clear <= along && square <= 2.0 * along * along && square <= reach * reach
+            })
+        })
+    }
+
     /// How many samples.
     pub fn len(&self) -> usize {
         self.count

@@ -26,7 +26,7 @@ impl PointSet {
         let sample = self.samples.nearest(at).ok_or(Stray::Sparse)?;
         scratch.0.forget();
         let field = self.field_near(at, sample, &mut scratch.0)?;
-        if self.has_ended(sample, &field) { Err(Stray::Ended) } else { Ok(field) }
+        if self.has_ended(sample, &field, &scratch.0) { Err(Stray::Ended) } else { Ok(field) }
     }
 
     /// The width that scales things at a point inside a trust sphere: that of the sample nearest in its own widths.

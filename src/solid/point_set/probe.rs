@@ -5,7 +5,8 @@ use glam::DVec3;
 use super::hierarchy::{Hierarchy, Reach};
 use super::{Kernel, PointSet};
 use crate::geom::Ray;
-use crate::mls::{AnyWay, Evaluator, Facing, Guess, Neighbours, SameWay, Sample, Stray, Weight};
+use crate::mls::{AnyWay, Compact, Evaluator, Facing, Guess, Neighbours, SameWay, Sample, Stray, Weight};
+use crate::solid::Body;
 
 /// F at a place of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,17 +51,32 @@ impl PointSet {
         let width = self.samples.widths[sample];
         let field = self.field_near(at, sample, room);
         let stray = field.is_err();
-        let f = field.ok().filter(|f| !self.has_ended(sample, f));
+        let f = field.ok().filter(|f| !self.has_ended(sample, f, room));
         let f = f.map(|f| [f.value, f.gradient.dot(line.dir)]);
         Probe { s, width, f, stray }
     }
 
-    /// Whether the samples have ended at a point: beyond the rim of a hole that is capped, and beyond the edge of a
-    /// wall so thin and sharp that its far side was left out. There the polynomial only extrapolates.
-    pub(super) fn has_ended(&self, sample: usize, field: &Sample) -> bool {
+    /// Whether the samples have ended at a point, the last one asked about: there the polynomial only extrapolates. So it is
+    /// beyond the rim of a hole that is capped, beyond the edge of a wall so thin and sharp that its far side was left out,
+    /// and beyond the edge of a sheet, where no sample lies ahead that the surface could go on to.
+    pub(super) fn has_ended(&self, sample: usize, field: &Sample, room: &Room) -> bool {
         // Where less than this share of the weight faces another way nothing has been left out.
         const WHOLE: f64 = 0.99;
-        (field.kept < WHOLE || self.near_rim(sample)) && self.kernel.edge() < field.drift
+        if field.drift <= self.kernel.edge() {
+            return false;
+        }
+        field.kept < WHOLE
+            || self.near_rim(sample)
+            || (self.body == Body::Sheet && self.nothing_ahead(sample, field, room))
+    }
+
+    /// Whether no sample lies beyond an edge: gaps narrower than a weight's support are spanned.
+    fn nothing_ahead(&self, sample: usize, field: &Sample, room: &Room) -> bool {
+        // Samples of the edge itself may stand out by so many widths.
+        const CLEAR: f64 = 0.25;
+        let h = self.samples.widths[sample];
+        let (outward, reach) = (field.plane_normal, h * Compact.support().sqrt());
+        !room.near.any_ahead(field.foot, field.away, outward, CLEAR * h, reach)
     }
 
     /// The sample nearest to arc length `s`, in its own widths.

@@ -41,8 +41,18 @@ impl PointSet {
     /// Traces seeded chords of the bounding sphere, each through two independent points of it. Stops early once
     /// more chords are odd than a solid may have; the same result for any number of threads.
     pub fn measure(&self) -> Solidity {
+        self.measure_until(MOST_ODD * f64::from(CHORDS))
+    }
+
+    /// The same over all chords, however many are odd.
+    pub fn measure_whole(&self) -> Solidity {
+        self.measure_until(f64::INFINITY)
+    }
+
+    /// Stops once more than `most` chords are odd.
+    fn measure_until(&self, most: f64) -> Solidity {
         let mut total = Solidity { chords: 0, odd: 0, counts: Counts::default() };
-        while total.chords < CHORDS && f64::from(total.odd) <= MOST_ODD * f64::from(CHORDS) {
+        while total.chords < CHORDS && f64::from(total.odd) <= most {
             let batch = total.chords..total.chords + BATCH;
             let parts: Vec<(u32, Counts)> = batch
                 .into_par_iter()
