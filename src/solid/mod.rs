@@ -90,6 +90,8 @@ pub struct Scratch {
 pub struct Counts {
     /// Solves of plane and polynomial, whatever for.
     pub projections: u64,
+    /// Of those, how many found too few samples for the degree asked, or samples that do not determine it.
+    pub degree_falls: u64,
     /// Crossings of point set surfaces found.
     pub crossings: u64,
     /// Cells of a ray that the curvature certificate could not decide.
@@ -116,6 +118,7 @@ impl Counts {
     /// Adds another thread's counts.
     pub fn add(&mut self, o: &Counts) {
         self.projections += o.projections;
+        self.degree_falls += o.degree_falls;
         self.crossings += o.crossings;
         self.certificate_failures += o.certificate_failures;
         self.parity_repairs += o.parity_repairs;

@@ -56,6 +56,7 @@ struct RayCounts {
 #[derive(Serialize, Debug)]
 struct PssCounts {
     projections: u64,
+    degree_falls: u64,
     patch_hits: u64,
     crossings: u64,
     certificate_failures: u64,
@@ -89,6 +90,7 @@ impl Stats {
             rays: RayCounts { camera: rays.camera, shadow: rays.shadow, bounce: rays.bounce },
             pss: PssCounts {
                 projections: counts.projections,
+                degree_falls: counts.degree_falls,
                 patch_hits: counts.patch_hits,
                 crossings: counts.crossings,
                 certificate_failures: counts.certificate_failures,

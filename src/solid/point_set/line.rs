@@ -140,10 +140,11 @@ impl PointSet {
             let normal = self.samples.normals[nearest];
             return if 0.0 < normal.dot(facing) { normal } else { facing };
         }
-        let before = line.room.projections;
+        let before = (line.room.projections, line.room.falls);
         let spheres = spheres_at(&line.bands, &line.reaches, s);
         let gradient = self.gradient_at(&unit, s, spheres, &mut line.room);
-        counts.projections += line.room.projections - before;
+        counts.projections += line.room.projections - before.0;
+        counts.degree_falls += line.room.falls - before.1;
         gradient.and_then(DVec3::try_normalize).unwrap_or(facing)
     }
 
@@ -203,7 +204,7 @@ impl PointSet {
         found.clear();
         // Bands may be searched in any order and must not feel each other's gathering.
         line.room.forget();
-        let before = line.room.projections;
+        let before = (line.room.projections, line.room.falls);
         let unit = line.line.unwrap_or(Ray::new(DVec3::ZERO, DVec3::Z));
         Search {
             set: self,
@@ -214,7 +215,8 @@ impl PointSet {
             stack: &mut line.stack,
         }
         .run(band.range);
-        counts.projections += line.room.projections - before;
+        counts.projections += line.room.projections - before.0;
+        counts.degree_falls += line.room.falls - before.1;
         counts.crossings += found.roots.len() as u64;
         counts.certificate_failures += found.failures;
         counts.parity_repairs += found.roots.iter().filter(|r| r.jump).count() as u64;

@@ -28,6 +28,8 @@ pub(super) struct Room {
     ready: bool,
     /// Solves of plane and polynomial.
     pub projections: u64,
+    /// How many of them lost a degree.
+    pub falls: u64,
 }
 
 impl Room {
@@ -127,26 +129,39 @@ impl PointSet {
         sample: usize,
         room: &mut Room,
     ) -> Result<Sample, Stray> {
-        room.projections += 1;
-        let support = evaluator.weight.support();
         // The foot on the plane of the nearest sample: a function of the point alone.
         let (p, outward) = (self.samples.points[sample], self.samples.normals[sample]);
         let width = self.samples.widths[sample];
         let guess = Guess { foot: at - outward * outward.dot(at - p), outward, width };
+        let answer = self.gathered(evaluator, at, &guess, room);
+        room.projections += 1;
+        room.falls += u64::from(answer.is_ok_and(|f| f.degree < evaluator.degree));
+        answer
+    }
+
+    /// F from the samples gathered last where they suffice, else gathers anew.
+    fn gathered<W: Weight, A: Facing>(
+        &self,
+        evaluator: &Evaluator<W, A>,
+        at: DVec3,
+        guess: &Guess,
+        room: &mut Room,
+    ) -> Result<Sample, Stray> {
+        let support = evaluator.weight.support();
         if room.ready {
-            let answer = evaluator.sample(&room.near, at, &guess);
+            let answer = evaluator.sample(&room.near, at, guess);
             if answer != Err(Stray::OutOfReach) {
                 return answer;
             }
         }
         room.ready = true;
-        self.samples.gather(&guess, REACH, support, &mut room.near);
-        let answer = evaluator.sample(&room.near, at, &guess);
+        self.samples.gather(guess, REACH, support, &mut room.near);
+        let answer = evaluator.sample(&room.near, at, guess);
         if answer != Err(Stray::OutOfReach) {
             return answer;
         }
-        self.samples.gather(&guess, FAR_REACH, support, &mut room.near);
-        match evaluator.sample(&room.near, at, &guess) {
+        self.samples.gather(guess, FAR_REACH, support, &mut room.near);
+        match evaluator.sample(&room.near, at, guess) {
             Err(Stray::OutOfReach) => Err(Stray::Outside),
             answer => answer,
         }
