@@ -1,7 +1,7 @@
 //! Weights: functions of the distance between a sample and the reference point alone, zero beyond a stated
 //! support, so that every part of the program sees the same surface.
 
-use fearless_simd::{Simd, prelude::*};
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use crate::num::lanes::{LANES, Lanes};
 
@@ -12,6 +12,11 @@ pub trait Weight: Copy + Send + Sync + std::fmt::Debug + 'static {
 
     /// The weight.
     fn value<S: Simd>(&self, simd: S, rho: Lanes<S>) -> Lanes<S>;
+
+    /// The weight at one rho: the same bits as [`Weight::value`].
+    fn at(&self, rho: f64) -> f64 {
+        dispatch!(Level::new(), simd => self.value(simd, Lanes::splat(simd, rho))[0])
+    }
 
     /// The weight and its first two derivatives with respect to rho.
     fn jet<S: Simd>(&self, simd: S, rho: Lanes<S>) -> [Lanes<S>; 3];
@@ -86,6 +91,11 @@ pub trait Facing: Copy + Send + Sync + std::fmt::Debug + 'static {
 
     /// The factor and its first two derivatives with respect to c.
     fn jet<S: Simd>(simd: S, c: Lanes<S>) -> [Lanes<S>; 3];
+
+    /// The factor at one c.
+    fn at(c: f64) -> f64 {
+        dispatch!(Level::new(), simd => Self::jet(simd, Lanes::splat(simd, c))[0][0])
+    }
 }
 
 /// All samples weigh, whichever way they face: the definition of the paper.
@@ -162,8 +172,6 @@ fn exp_minus<S: Simd>(simd: S, x: Lanes<S>) -> Lanes<S> {
 
 #[cfg(test)]
 mod tests {
-    use fearless_simd::{Level, dispatch};
-
     use super::*;
 
     fn value(w: &impl Weight, rho: f64) -> f64 {

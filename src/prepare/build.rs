@@ -10,7 +10,8 @@ use crate::cloud::scraps::bounding;
 use crate::cloud::winding::Winding;
 use crate::cloud::{Cloud, CloudError, CloudFault, NormalSource, SampleOptions, Samples, ply};
 use crate::diag::{Diagnostic, Fault};
-use crate::scene::{Call, ShapeNode, Value};
+use crate::scene::{Call, MaterialId, ShapeNode, Value};
+use crate::shot::Material;
 use crate::solid::point_set::{Options, PointSet, Solidity};
 use crate::solid::{Body, Counts, Solid, points};
 
@@ -43,6 +44,8 @@ pub(super) struct ScanId(usize);
 #[derive(Debug)]
 pub(super) struct Builder<'a> {
     options: &'a super::Options,
+    /// The scene's materials.
+    pub materials: &'a [Material],
     /// By the address of the node, which lives as long as the scene.
     built: HashMap<usize, Built>,
     scan: Vec<Scan>,
@@ -58,9 +61,10 @@ pub(super) struct Builder<'a> {
 
 impl<'a> Builder<'a> {
     /// Nothing built yet.
-    pub fn new(options: &'a super::Options) -> Builder<'a> {
+    pub fn new(options: &'a super::Options, materials: &'a [Material]) -> Builder<'a> {
         Builder {
             options,
+            materials,
             built: HashMap::new(),
             scan: Vec::new(),
             warnings: Vec::new(),
@@ -94,8 +98,23 @@ impl<'a> Builder<'a> {
         ply::read_path(&path).map_err(|e| cloud_complaint(call, &format!("`{text}`"), e))
     }
 
+    /// Whether any material reads the colours of scans; else none is kept.
+    pub fn reads_colors(&self) -> bool {
+        self.materials.iter().any(Material::reads_color)
+    }
+
+    /// Whether a scan has no colours for a material that reads them.
+    pub fn lacks_color(&self, id: ScanId, material: Option<MaterialId>) -> bool {
+        let reads =
+            material.and_then(|m| self.materials.get(m.0 as usize)).is_some_and(Material::reads_color);
+        reads && self.scan[id.0].samples.colors.is_none()
+    }
+
     /// Makes a surface of a cloud.
-    pub fn scan(&mut self, call: &Call, name: &str, cloud: Cloud) -> Result<ScanId, Diagnostic> {
+    pub fn scan(&mut self, call: &Call, name: &str, mut cloud: Cloud) -> Result<ScanId, Diagnostic> {
+        if !self.reads_colors() {
+            cloud.colors = None;
+        }
         let options = SampleOptions {
             smoothing: call.number("smoothing").unwrap_or(1.0),
             width: call.number("h"),
@@ -162,7 +181,11 @@ impl<'a> Builder<'a> {
 }
 
 fn surface_of(samples: &Samples, options: &Options) -> Arc<PointSet> {
-    Arc::new(PointSet::new(&samples.points, &samples.normals, &samples.widths, options))
+    let surface = PointSet::new(&samples.points, &samples.normals, &samples.widths, options);
+    Arc::new(match &samples.colors {
+        Some(colors) => surface.with_colors(colors),
+        None => surface,
+    })
 }
 
 impl Solidity {

@@ -173,6 +173,13 @@ impl<'b, 'o> Lowering<'b, 'o> {
                 return Err(Diagnostic::error("E0304", "only a scan has holes to close").at(at, ""));
             }
             (Built::Exact(solid), None) => return Ok(solid),
+            (Built::Scan(id), _) if self.builder.lacks_color(id, context.material) => {
+                let error =
+                    Diagnostic::error("E0307", "its material takes its colour from the scan, which has none");
+                return Err(error.at(shape.0.at, "").help(
+                    "take a scan with `red green blue`, or a material of one colour: `matte(#b8683c)`",
+                ));
+            }
             (Built::Scan(id), Some((max_hole, frame, at))) => {
                 // Lengths of the frame that `.close` is written in, taken to the scan's own.
                 let scale = mean_scale(&(frame.inverse() * context.world_from_local));
@@ -243,12 +250,13 @@ impl<'b, 'o> Lowering<'b, 'o> {
             return Err(Diagnostic::error("E0301", "only a solid can be sampled").at(at, "a Sheet"));
         };
         let object = Object::new(own.leaves, &expr);
+        let colors = self.builder.reads_colors().then_some(self.builder.materials);
         let sampling = Sampling {
             count: count as usize,
             noise: call.number("noise").unwrap_or(0.0),
             seed: call.number("seed").unwrap_or(0.0) as u64,
         };
-        sample(&object, &bounds, &sampling).map_err(|e| {
+        sample(&object, &bounds, &sampling, colors).map_err(|e| {
             let error = Diagnostic::error("E0306", e.to_string()).at(at, "");
             error.help("sample a bounded solid that has an inside, such as `sphere(r: 1)`")
         })

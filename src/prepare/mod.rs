@@ -86,17 +86,18 @@ pub fn prepare(scene: &Scene, options: &Options) -> Result<Prepared, Vec<Diagnos
     let materials = keep(&mut errors, materials_of(scene));
     let lights = keep(&mut errors, lights_of(scene));
     let chosen = keep(&mut errors, camera_of(scene, options.camera.as_deref()));
-    let mut builder = Builder::new(options);
-    let world = world(scene, &mut builder, options.measure_all, materials.as_ref().map_or(0, Vec::len));
+    let known = materials.as_deref().unwrap_or_default();
+    let mut builder = Builder::new(options, known);
+    let world = world(scene, &mut builder, options.measure_all, known.len());
     let world = world.map_err(|more| errors.extend(more)).ok();
     let (Some(settings), Some(materials), Some(lights), Some(chosen), Some(world)) =
-        (settings, materials, lights, chosen, world)
+        (settings, materials.clone(), lights, chosen, world)
     else {
         return Err(errors);
     };
+    let Builder { warnings, inputs, counts, scans, .. } = builder;
     let camera = chosen.unwrap_or_else(|| Camera::fit(world.bounds()));
     let shot = Shot { world, camera, lights, materials, settings };
-    let Builder { warnings, inputs, counts, scans, .. } = builder;
     Ok(Prepared { shot, warnings, inputs, counts, scans })
 }
 

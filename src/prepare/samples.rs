@@ -13,9 +13,10 @@ use rayon::prelude::*;
 
 use crate::cloud::Cloud;
 use crate::cloud::neighbours::{Near, Neighbours};
-use crate::csg::{Object, Scratch, Spans};
+use crate::csg::{Boundary, Object, Scratch, Spans};
 use crate::geom::{Aabb, Interval, Ray};
 use crate::num::hash::{Stream, mix};
+use crate::shot::Material;
 
 /// How samples are taken.
 #[derive(Clone, Copy, Debug)]
@@ -51,10 +52,17 @@ const PATIENCE: u64 = 64;
 struct Candidate {
     point: DVec3,
     normal: DVec3,
+    /// Its colour, where asked for.
+    color: [f32; 3],
 }
 
-/// Samples an object within a box around it.
-pub(super) fn sample(object: &Object, bounds: &Aabb, sampling: &Sampling) -> Result<Cloud, SampleError> {
+/// Samples an object within a box around it; with the colours of these materials, if given.
+pub(super) fn sample(
+    object: &Object,
+    bounds: &Aabb,
+    sampling: &Sampling,
+    materials: Option<&[Material]>,
+) -> Result<Cloud, SampleError> {
     if !bounds.is_finite() {
         return Err(if bounds.is_empty() { SampleError::Empty } else { SampleError::Unbounded });
     }
@@ -74,6 +82,7 @@ pub(super) fn sample(object: &Object, bounds: &Aabb, sampling: &Sampling) -> Res
                 crossings(
                     object,
                     &Ray::chord(&mut Stream::new(mix(sampling.seed) ^ (first + i as u64)), center, radius),
+                    materials.unwrap_or_default(),
                     scratch,
                 )
             })
@@ -89,12 +98,14 @@ pub(super) fn sample(object: &Object, bounds: &Aabb, sampling: &Sampling) -> Res
     let packed = (area / (2.0 * 3f64.sqrt() * sampling.count as f64)).sqrt();
     candidates.truncate(wanted);
     let kept = eliminate(&candidates, sampling.count, packed);
-    Ok(noisy(kept.iter().map(|i| candidates[*i]), sampling))
+    let mut cloud = noisy(kept.iter().map(|i| candidates[*i]), sampling);
+    cloud.colors = materials.map(|_| kept.iter().map(|i| candidates[*i].color).collect());
+    Ok(cloud)
 }
 
 fn noisy(kept: impl Iterator<Item = Candidate>, sampling: &Sampling) -> Cloud {
     let mut cloud = Cloud { normals: Some(Vec::new()), ..Cloud::default() };
-    for (i, Candidate { point, normal }) in kept.enumerate() {
+    for (i, Candidate { point, normal, .. }) in kept.enumerate() {
         let mut stream = Stream::new(mix(sampling.seed ^ 0x4e01_5e00) ^ i as u64);
         let shake = DVec3::new(stream.normal(), stream.normal(), stream.normal());
         let shake = if sampling.noise == 0.0 { DVec3::ZERO } else { sampling.noise * shake };
@@ -104,14 +115,19 @@ fn noisy(kept: impl Iterator<Item = Candidate>, sampling: &Sampling) -> Cloud {
     cloud
 }
 
-fn crossings(object: &Object, ray: &Ray, scratch: &mut Scratch) -> Vec<Candidate> {
+fn crossings(object: &Object, ray: &Ray, materials: &[Material], scratch: &mut Scratch) -> Vec<Candidate> {
     if !ray.is_valid() {
         return Vec::new();
     }
     let mut spans = Spans::new();
     object.spans(ray, Interval::ALL, scratch, &mut spans);
     let ends = spans.iter().flat_map(|s| [s.enter, s.exit]).flatten();
-    ends.map(|b| Candidate { point: ray.at(b.t), normal: b.normal }).collect()
+    let color = |b: &Boundary| {
+        let leaf = |i: u32| object.leaves()[i as usize].material;
+        let material = leaf(b.leaf).or_else(|| leaf(b.filler?));
+        material.and_then(|m| materials.get(m as usize)).copied().unwrap_or_default().albedo(None)
+    };
+    ends.map(|b| Candidate { point: ray.at(b.t), normal: b.normal, color: color(&b) }).collect()
 }
 
 /// A candidate by how crowded it is; the largest is dropped next.

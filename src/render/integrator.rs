@@ -53,7 +53,7 @@ impl<'a, S: Scenery> Painter<'a, S> {
             let ray = ray_at(0.5, 0.5);
             let seen = tracer.see(&ray);
             if let Some(seen) = &seen {
-                layers::keep(film, pixel, &ray, seen, self.albedo(seen));
+                layers::keep(film, pixel, &ray, seen, self.albedo(tracer, seen));
             }
             seen
         });
@@ -87,14 +87,14 @@ impl<'a, S: Scenery> Painter<'a, S> {
                 (0.5 * normal + 0.5).as_vec3().to_array()
             }
             Integrator::Depth => [self.brightness(layers::distance(ray, seen)); 3],
-            Integrator::Flat => self.albedo(seen),
+            Integrator::Flat => self.albedo(tracer, seen),
         };
         [r, g, b, 1.0]
     }
 
     /// Light from the lights that the surface sends to the eye.
     fn direct(&self, tracer: &mut Tracer<S>, ray: &Ray, seen: &Seen, sample: Sample) -> [f32; 3] {
-        let albedo = self.albedo(seen);
+        let albedo = self.albedo(tracer, seen);
         if albedo == [0.0; 3] {
             return albedo;
         }
@@ -102,8 +102,9 @@ impl<'a, S: Scenery> Painter<'a, S> {
         std::array::from_fn(|i| albedo[i] * light[i])
     }
 
-    fn albedo(&self, seen: &Seen) -> [f32; 3] {
-        self.view.materials.get(seen.surface.material as usize).copied().unwrap_or_default().albedo()
+    fn albedo(&self, tracer: &mut Tracer<S>, seen: &Seen) -> [f32; 3] {
+        let material = self.view.materials.get(seen.surface.material as usize).copied().unwrap_or_default();
+        material.albedo(if material.reads_color() { tracer.color(seen) } else { None })
     }
 
     /// 1 at the near end of what is drawn, 0 at the far end.

@@ -1,6 +1,8 @@
 //! What an integrator asks of the world, as a trait, so that tests can render closed forms without it; and
 //! the counting of rays.
 
+use glam::DVec3;
+
 use crate::csg::Scratch;
 use crate::geom::{Aabb, Interval, Ray};
 use crate::shot::{Hit, Surface, World};
@@ -18,6 +20,11 @@ pub trait Scenery: Sync {
 
     /// The surface of a hit.
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface;
+
+    /// The linear colour that what was hit has itself.
+    fn color(&self, _hit: &Hit, _point: DVec3, _scratch: &mut Scratch) -> Option<[f32; 3]> {
+        None
+    }
 }
 
 impl Scenery for World {
@@ -35,6 +42,10 @@ impl Scenery for World {
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         World::surface(self, ray, hit)
+    }
+
+    fn color(&self, hit: &Hit, point: DVec3, scratch: &mut Scratch) -> Option<[f32; 3]> {
+        World::color(self, hit, point, scratch)
     }
 }
 
@@ -75,7 +86,7 @@ pub struct Seen {
     /// The surface there.
     pub surface: Surface,
     /// The unit normal on the eye's side: of sheets, and of solids seen from inside, turned to the eye.
-    pub normal: glam::DVec3,
+    pub normal: DVec3,
 }
 
 impl<'a, S: Scenery> Tracer<'a, S> {
@@ -91,6 +102,11 @@ impl<'a, S: Scenery> Tracer<'a, S> {
         let surface = self.scenery.surface(ray, &hit);
         let away = if hit.sheet { 0.0 < surface.normal.dot(ray.dir) } else { !hit.entering };
         Some(Seen { hit, surface, normal: if away { -surface.normal } else { surface.normal } })
+    }
+
+    /// The colour that what the eye sees has itself.
+    pub fn color(&mut self, seen: &Seen) -> Option<[f32; 3]> {
+        self.scenery.color(&seen.hit, seen.surface.point, &mut self.scratch)
     }
 
     /// Whether something lies between a surface and what sends it light.

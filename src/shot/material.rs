@@ -10,6 +10,11 @@ pub enum Material {
         /// The share of light sent on, linear.
         color: [f32; 3],
     },
+    /// Matte, in the colours of the scan itself.
+    Points {
+        /// Multiplies them, linear.
+        tint: [f32; 3],
+    },
 }
 
 /// `#cccccc` decoded: light enough to show shading, dark enough not to clip.
@@ -22,10 +27,19 @@ impl Default for Material {
 }
 
 impl Material {
-    /// The share of light it sends on, linear.
-    pub fn albedo(&self) -> [f32; 3] {
+    /// Whether it asks what colour the surface itself has.
+    pub fn reads_color(&self) -> bool {
+        matches!(self, Material::Points { .. })
+    }
+
+    /// The share of light it sends on, linear; `own` is the colour that the surface itself has, if it has one.
+    pub fn albedo(&self, own: Option<[f32; 3]>) -> [f32; 3] {
         match self {
             Material::Matte { color } => *color,
+            Material::Points { tint } => {
+                let own = own.unwrap_or(DEFAULT_COLOR);
+                std::array::from_fn(|i| own[i] * tint[i])
+            }
         }
     }
 }
@@ -37,16 +51,28 @@ struct Make {
 }
 
 /// All kinds of material; a new one is its line here.
-const TABLE: &[Make] = &[Make {
-    decl: Decl {
-        word: "matte",
-        group: Group::Material,
-        doc: "Equally bright from all sides, as chalk or clay.",
-        params: &[Param::placed("color", Kind::Color, "its colour; default #cccccc")],
-        example: "matte(#b8683c)",
+const TABLE: &[Make] = &[
+    Make {
+        decl: Decl {
+            word: "matte",
+            group: Group::Material,
+            doc: "Equally bright from all sides, as chalk or clay.",
+            params: &[Param::placed("color", Kind::Color, "its colour; default #cccccc")],
+            example: "matte(#b8683c)",
+        },
+        build: |call| Ok(Material::Matte { color: color(call, DEFAULT_COLOR)? }),
     },
-    build: |call| Ok(Material::Matte { color: color(call)? }),
-}];
+    Make {
+        decl: Decl {
+            word: "points",
+            group: Group::Material,
+            doc: "Matte, in the colours of the scan's own points.",
+            params: &[Param::placed("color", Kind::Color, "multiplies them; default #ffffff")],
+            example: "material own(kind: \"points\")",
+        },
+        build: |call| Ok(Material::Points { tint: color(call, [1.0; 3])? }),
+    },
+];
 
 /// The declarations of all materials.
 pub fn decls() -> impl Iterator<Item = Decl> {
@@ -63,8 +89,8 @@ pub fn build(call: &Call) -> Result<Material, BuildError> {
     (make.build)(call)
 }
 
-fn color(call: &Call) -> Result<[f32; 3], BuildError> {
-    let color = call.color("color").unwrap_or(DEFAULT_COLOR);
+fn color(call: &Call, otherwise: [f32; 3]) -> Result<[f32; 3], BuildError> {
+    let color = call.color("color").unwrap_or(otherwise);
     if color.iter().all(|c| c.is_finite() && 0.0 <= *c) {
         return Ok(color);
     }

@@ -148,6 +148,12 @@ impl World {
         }
     }
 
+    /// The linear colour that the leaf of a hit itself has there.
+    pub fn color(&self, hit: &Hit, point: DVec3, scratch: &mut csg::Scratch) -> Option<[f32; 3]> {
+        let leaf = self.leaf(hit);
+        leaf.solid.color(leaf.place.local_from_world.transform_point3(point), &mut scratch.solid)
+    }
+
     /// The name of a boundary's leaf, as the scene calls it.
     pub fn leaf_name(&self, hit: &Hit) -> &str {
         &self.leaf(hit).name

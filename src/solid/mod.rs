@@ -59,6 +59,11 @@ pub trait Solid: Send + Sync + Debug {
     /// The outward unit normal at a crossing that [`Solid::crossings`] gave for this ray.
     fn normal(&self, ray: &Ray, crossing: &Crossing, scratch: &mut Scratch) -> DVec3;
 
+    /// The linear colour at a point of the boundary, own frame, where the solid itself has colours.
+    fn color(&self, _at: DVec3, _scratch: &mut Scratch) -> Option<[f32; 3]> {
+        None
+    }
+
     /// The bound that [`Crossing::shift`] keeps, length of the solid's own frame.
     fn shift_bound(&self) -> f64 {
         0.0
@@ -83,6 +88,8 @@ pub struct Scratch {
     pub counts: Counts,
     /// What is known of the line being asked about, for each point set surface.
     pub lines: Vec<point_set::LineScratch>,
+    /// Room for asking a point set surface about points.
+    pub field: point_set::FieldScratch,
 }
 
 /// Counts of work. Sums of them do not depend on the order of work.

@@ -102,7 +102,17 @@ impl Hierarchy {
     /// The sample whose trust sphere holds a point and to which the point is nearest in that sample's own widths
     /// (ties by index).
     pub fn nearest(&self, at: DVec3) -> Option<usize> {
-        let mut best = (1.0, usize::MAX);
+        self.nearest_within(at, 1.0)
+    }
+
+    /// The sample to which a point is nearest in that sample's own widths, however far.
+    pub fn nearest_of_all(&self, at: DVec3) -> Option<usize> {
+        self.nearest_within(at, f64::INFINITY)
+    }
+
+    /// `limit` is a squared distance in squared widths.
+    fn nearest_within(&self, at: DVec3, limit: f64) -> Option<usize> {
+        let mut best = (limit, usize::MAX);
         let mut stack = [0u32; 64];
         let mut depth = usize::from(!self.nodes.is_empty());
         while 0 < depth {
@@ -134,7 +144,15 @@ impl Hierarchy {
     pub fn gather(&self, guess: &Guess, reach: f64, support: f64, out: &mut Neighbours) {
         let Guess { foot: center, outward, width: unit } = *guess;
         out.reset(center, unit, reach, outward);
-        let (k, r) = (support.sqrt(), reach * unit);
+        self.visit(center, reach * unit, support.sqrt(), |i| {
+            out.push(self.points[i], self.normals[i], self.inverse_widths[i]);
+        });
+    }
+
+    /// Shows every sample whose ball of `k` widths meets the ball of radius `r` (world length) about a point, in the
+    /// order of storage.
+    #[inline(always)]
+    pub fn visit(&self, center: DVec3, r: f64, k: f64, mut show: impl FnMut(usize)) {
         let mut stack = [0u32; 64];
         let mut depth = usize::from(!self.nodes.is_empty());
         while 0 < depth {
@@ -152,10 +170,9 @@ impl Hierarchy {
                 continue;
             }
             for i in node.start as usize..(node.start + node.count) as usize {
-                let (p, h) = (self.points[i], self.widths[i]);
-                let far = r + k * h;
-                if (p - center).length_squared() < far * far {
-                    out.push(p, self.normals[i], self.inverse_widths[i]);
+                let far = r + k * self.widths[i];
+                if (self.points[i] - center).length_squared() < far * far {
+                    show(i);
                 }
             }
         }

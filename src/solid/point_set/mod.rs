@@ -5,6 +5,7 @@
 
 mod caps;
 mod certificate;
+mod color;
 mod field;
 mod hierarchy;
 mod line;
@@ -86,6 +87,8 @@ pub struct PointSet {
     tolerance: f64,
     /// How far two definitions of inside may disagree, world length: [`roots::WALL`] of the median width.
     grain: f64,
+    /// Linear, in the order of the hierarchy; only where something reads them.
+    colors: Option<Arc<Vec<[f32; 3]>>>,
     bounds: Aabb,
     body: Body,
     closure: Option<Closure>,
@@ -116,6 +119,7 @@ impl PointSet {
             tolerance: options.tolerance * diagonal,
             grain: roots::WALL * median(widths),
             bounds,
+            colors: None,
             body: Body::Sheet,
             closure: None,
             winding: Arc::default(),
@@ -194,6 +198,10 @@ impl Solid for PointSet {
 
     fn normal(&self, ray: &Ray, crossing: &Crossing, scratch: &mut Scratch) -> DVec3 {
         self.line_normal(ray, crossing, scratch)
+    }
+
+    fn color(&self, at: DVec3, scratch: &mut Scratch) -> Option<[f32; 3]> {
+        self.color_at(at, scratch)
     }
 
     fn shift_bound(&self) -> f64 {
