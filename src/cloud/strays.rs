@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::groups::Groups;
 use super::neighbours::{Neighbours, Table};
-use super::normals::roughness;
+use super::normals::{NORMAL_NEIGHBOURS, roughness};
 
 /// Groups of fewer samples are strays: twice the six coefficients of a quadratic polynomial, which is
 /// how many samples a weight of ordinary width holds.
@@ -45,7 +45,7 @@ pub fn strays(points: &[DVec3], spacing: &[f64], widths: &[f64], table: &Table) 
     for group in groups.iter().filter(|group| !is_body(group)) {
         let is_stray = group.len() < LEAST_GROUP.min(largest)
             || THIN < median(group, &mut thinness)
-                && ROUGH < median(group, &mut |i| roughness(points, i as usize, table));
+                && ROUGH < median(group, &mut |i| roughness(points, i as usize, NORMAL_NEIGHBOURS, table));
         group.iter().for_each(|&i| strays[i as usize] = is_stray);
     }
     strays

@@ -19,20 +19,19 @@ pub fn estimate(points: &[DVec3], table: &Table) -> Vec<DVec3> {
 
 /// The same for one sample.
 pub fn normal(points: &[DVec3], i: usize, table: &Table) -> DVec3 {
-    spread(points, i, table).1.x_axis
+    spread(points, i, &table.row(i)[..table.k().min(NORMAL_NEIGHBOURS)]).1.x_axis
 }
 
-/// How much of the spread around a sample is off its plane: the least eigenvalue over their sum, 0 for a plane,
-/// one third for points that fill space.
-pub fn roughness(points: &[DVec3], i: usize, table: &Table) -> f64 {
-    let [a, b, c] = spread(points, i, table).0;
+/// How much of the spread of its `k` nearest around a sample is off their plane: the least eigenvalue over their sum, 0
+/// for a plane, one third for points that fill space.
+pub fn roughness(points: &[DVec3], i: usize, k: usize, table: &Table) -> f64 {
+    let [a, b, c] = spread(points, i, &table.row(i)[..table.k().min(k)]).0;
     let sum = a + b + c;
     if 0.0 < sum { a / sum } else { 0.0 }
 }
 
-/// Eigenvalues, ascending, and eigenvectors of the weighted covariance around a sample.
-fn spread(points: &[DVec3], i: usize, table: &Table) -> ([f64; 3], DMat3) {
-    let row = &table.row(i)[..table.k().min(NORMAL_NEIGHBOURS)];
+/// Eigenvalues, ascending, and eigenvectors of the weighted covariance of a sample and some others.
+fn spread(points: &[DVec3], i: usize, row: &[u32]) -> ([f64; 3], DMat3) {
     let offsets = || row.iter().map(|&j| points[j as usize] - points[i]);
     let reach = offsets().map(DVec3::length_squared).fold(0.0, f64::max);
     // Slightly beyond the farthest: of three neighbours none is lost.

@@ -1,6 +1,8 @@
 //! Normals of the samples: kept from the file where it has them, else estimated and oriented; in both cases
 //! checked by what neighbours and the winding number say.
 
+mod coarse;
+mod contract;
 mod estimate;
 mod improve;
 mod orient;
@@ -11,7 +13,9 @@ use super::neighbours::Table;
 
 pub use estimate::{NORMAL_NEIGHBOURS, estimate, roughness};
 pub use improve::improve;
-pub use orient::{agreement, orient};
+pub use orient::{Spread, agreement, orient};
+
+use coarse::Coarse;
 
 /// Above this share of neighbours with opposed normals those of a file are improved by the winding number.
 /// Scans made with care have below 0.3 %; thin walls and creases make some of it.
@@ -20,6 +24,13 @@ const DOUBTFUL: f64 = 0.01;
 /// A surface counts as closed where the vector sum of its areas is below this share of their sum: it is
 /// zero for a closed one (divergence theorem), one for a flat sheet, one half for a hemisphere.
 const CLOSED: f64 = 0.1;
+
+/// From this median roughness of the closest samples on a cloud is noisy. Clean scans have 0.0004 to 0.007, raw ones 0.045
+/// and 0.09; on the noisier of these, signs spread over the samples themselves were right on 92 %, over means on 99.7 %.
+const NOISY: f64 = 0.02;
+
+/// Fewer means than this carry no shape.
+const FEWEST: usize = 100;
 
 /// Rounds of improvement at most; in tests with a fifth of the normals flipped three were enough.
 const ROUNDS: usize = 6;
@@ -46,11 +57,27 @@ pub struct Scene<'a> {
     pub widths: &'a [f64],
 }
 
-/// Estimates all normals and gives them signs.
+/// Estimates all normals and gives them signs. Those of a cloud so noisy that the planes of few neighbours mislead
+/// are taken from a coarser cloud of means.
 pub fn from_points(scene: Scene<'_>) -> Oriented {
+    if median_roughness(scene) < NOISY {
+        return estimated(scene, Spread::Tree);
+    }
+    let coarse = Coarse::new(scene);
+    if coarse.points.len() < FEWEST {
+        return estimated(scene, Spread::Tree);
+    }
+    let Oriented { normals, mut notes, .. } = estimated(coarse.scene(), Spread::Borders);
+    let normals = coarse.spread(scene.points, &normals);
+    notes.push(format!("noisy: normals are those of {} means of near samples", coarse.points.len()));
+    let opposed = agreement(&normals, scene.table);
+    Oriented { normals, opposed, notes }
+}
+
+fn estimated(scene: Scene<'_>, spread: Spread) -> Oriented {
     let mut normals = estimate(scene.points, scene.table);
     let areas = scene.areas(&normals);
-    orient(scene, &areas, &mut normals);
+    orient(scene, &areas, &mut normals, spread);
     let mut notes = Vec::new();
     let flips = improve(scene, &areas, &mut normals, ROUNDS);
     if 0 < flips {
@@ -58,6 +85,19 @@ pub fn from_points(scene: Scene<'_>) -> Oriented {
     }
     let opposed = agreement(&normals, scene.table);
     Oriented { normals, opposed, notes }
+}
+
+/// The median of the roughness of samples spread over the cloud.
+fn median_roughness(scene: Scene<'_>) -> f64 {
+    const ASKED: usize = 2000;
+    // So few do not yet reach the other side of a thin wall.
+    const CLOSEST: usize = 8;
+    let n = scene.points.len();
+    let asked = n.min(ASKED);
+    let mut all: Vec<f64> =
+        (0..asked).map(|k| roughness(scene.points, k * n / asked, CLOSEST, scene.table)).collect();
+    all.sort_unstable_by(f64::total_cmp);
+    all.get(asked / 2).copied().unwrap_or(0.0)
 }
 
 /// Keeps given unit normals (zero where missing), estimates the missing ones, turns single ones that contradict

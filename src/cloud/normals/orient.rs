@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::contract::contract;
 use super::{Scene, estimate};
 use crate::cloud::groups::Groups;
 use crate::cloud::neighbours::Table;
@@ -37,11 +38,22 @@ fn accord(p: DVec3, q: DVec3, n: DVec3, m: DVec3) -> (f64, f64) {
     (n.dot(m) - 2.0 * a * b, (1.0 - (a * a).max(b * b)).max(0.0))
 }
 
-/// Gives signs to unit normals: spreads them along a minimum spanning tree of the graph of nearest
-/// neighbours with the weight `1 - |accord| tangency` (Hoppe et al. 1992, whose weight is `1 - |n_i . n_j|`), then
-/// turns each connected piece outward, and those inside an odd number of others inward, as the walls of a cavity.
-pub fn orient(scene: Scene<'_>, areas: &[f64], normals: &mut [DVec3]) {
-    let mut groups = spanning_tree(scene, normals);
+/// How signs spread over the graph of nearest neighbours.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Spread {
+    /// Along a minimum spanning tree with the weight `1 - |accord| tangency` (Hoppe et al. 1992, whose weight is
+    /// `1 - |n_i . n_j|`).
+    Tree,
+    /// By contraction, where single edges are not to be trusted; some ten times the time.
+    Borders,
+}
+
+/// Gives signs to unit normals: spreads them over the graph of nearest neighbours, then turns each connected piece outward, and those inside an odd number of others inward, as the walls of a cavity.
+pub fn orient(scene: Scene<'_>, areas: &[f64], normals: &mut [DVec3], spread: Spread) {
+    let mut groups = match spread {
+        Spread::Tree => spanning_tree(scene, normals),
+        Spread::Borders => contracted(scene, normals),
+    };
     for (i, normal) in normals.iter_mut().enumerate() {
         if groups.find(i).1 {
             *normal = -*normal;
@@ -58,6 +70,20 @@ pub fn orient(scene: Scene<'_>, areas: &[f64], normals: &mut [DVec3]) {
         }
     }
     turn_cavities(scene.points, areas, &pieces, normals);
+}
+
+/// Signs by the vote of whole borders between patches: see [`super::contract`].
+fn contracted(scene: Scene<'_>, normals: &[DVec3]) -> Groups {
+    let Scene { points, table, .. } = scene;
+    let mut edges = Vec::with_capacity(points.len() * GRAPH);
+    for i in 0..points.len() {
+        for &j in table.row(i).iter().take(GRAPH) {
+            let (a, b) = (i.min(j as usize), i.max(j as usize));
+            let (accord, tangent) = accord(points[a], points[b], normals[a], normals[b]);
+            edges.push((a as u32, b as u32, accord * tangent));
+        }
+    }
+    contract(points.len(), &edges)
 }
 
 fn spanning_tree(scene: Scene<'_>, normals: &[DVec3]) -> Groups {
