@@ -1,19 +1,33 @@
 //! Scenes from text.
+#![allow(dead_code)]
 
 use pss::csg::{Scratch, Spans};
 use pss::geom::{Interval, Ray};
-use pss::prepare::{self, Options};
+use pss::diag::Diagnostic;
+use pss::prepare::{self, Options, Prepared};
 use pss::shot::Shot;
 use pss::source::SourceMap;
 
-/// A scene's text, prepared.
-pub fn shot(text: &str) -> Shot {
+fn read(text: &str) -> Result<Prepared, Vec<Diagnostic>> {
     let mut sources = SourceMap::default();
     let file = sources.add("test.pss", None, text.to_owned());
-    let read = pss::lang::read(&mut sources, file, &prepare::catalog(), &[]);
-    let (scene, _) = read.unwrap_or_else(|e| panic!("{text}\n{e:?}"));
-    let prepared = prepare::prepare(&scene, &Options { measure_all: true, ..Options::default() });
-    prepared.unwrap_or_else(|e| panic!("{text}\n{e:?}")).shot
+    let (scene, _) = pss::lang::read(&mut sources, file, &prepare::catalog(), &[])?;
+    prepare::prepare(&scene, &Options { measure_all: true, scene_dir: env!("CARGO_MANIFEST_DIR").into(), allow_read: vec!["../shared/scans".into()], ..Options::default() })
+}
+
+/// A scene's text, prepared, with what was found on the way.
+pub fn prepared(text: &str) -> Prepared {
+    read(text).unwrap_or_else(|e| panic!("{text}\n{e:?}"))
+}
+
+/// A scene's text, prepared.
+pub fn shot(text: &str) -> Shot {
+    prepared(text).shot
+}
+
+/// What is wrong with a scene's text.
+pub fn errors(text: &str) -> Vec<Diagnostic> {
+    read(text).err().unwrap_or_default()
 }
 
 /// All spans of a ray's line.
