@@ -69,7 +69,12 @@ fn f6_a_thickened_plane_is_a_slab_that_ends_where_the_samples_end() {
             assert!(normal.x < -0.99, "{normal}");
         }
         let (low, high) = edges.iter().fold((f64::MAX, f64::MIN), |(l, h), e| (l.min(*e), h.max(*e)));
-        println!("d/h {:.1}: faces off by {worst:.1e}, edge at {:.3}..{:.3} h past the last sample", d / h, low / h, high / h);
+        println!(
+            "d/h {:.1}: faces off by {worst:.1e}, edge at {:.3}..{:.3} h past the last sample",
+            d / h,
+            low / h,
+            high / h
+        );
         assert!(worst < 1e-9, "{worst:e}");
         // The last row stands for half a spacing beyond it.
         let off = [low, high].map(|e| (e - 0.5 * spacing).abs() / h);
@@ -91,7 +96,8 @@ fn a_thickened_hemisphere_is_a_shell_of_that_thickness() {
             let to = chord(i, DVec3::ZERO, 1.0).origin;
             let to = DVec3::new(to.x, to.y, to.z.abs() + 0.2).normalize();
             let ray = Ray::new(DVec3::ZERO, to);
-            let found: Vec<_> = all_of(&thick, &ray, &mut scratch).into_iter().filter(|c| 0.0 < c.t).collect();
+            let found: Vec<_> =
+                all_of(&thick, &ray, &mut scratch).into_iter().filter(|c| 0.0 < c.t).collect();
             assert_eq!(found.len(), 2, "d/h {} along {to}", d / h);
             worst = worst.max((found[1].t - found[0].t - d).abs() / d);
             let normal = thick.normal(&ray, &found[1], &mut scratch);
@@ -106,7 +112,8 @@ fn a_thickened_hemisphere_is_a_shell_of_that_thickness() {
         let per = scratch.counts.projections as f64 / 1900.0;
         println!(
             "d/h {:.1}: thickness off by {worst:.1e}, {odd} odd chords, {crossings} crossings, {per:.0} solves a line, {} undecided",
-            d / h, scratch.counts.certificate_failures
+            d / h,
+            scratch.counts.certificate_failures
         );
         assert!(worst < 0.01, "{worst:e}");
         assert_eq!(odd, 0);
@@ -157,12 +164,18 @@ fn insets_and_offsets_of_closed_forms_are_exact() {
         ("sphere(r: 2).offset(0.5)", "sphere(r: 2.5)"),
         ("sphere(r: 2).scale(2).inset(0.5)", "sphere(r: 3.5)"),
         ("sphere(r: 2).inset(0.5).scale(2)", "sphere(r: 3)"),
-        ("box([0, 0, 0], [2, 3, 4]).rotate_z(30deg).inset(0.5)", "box([0.5, 0.5, 0.5], [1.5, 2.5, 3.5]).rotate_z(30deg)"),
+        (
+            "box([0, 0, 0], [2, 3, 4]).rotate_z(30deg).inset(0.5)",
+            "box([0.5, 0.5, 0.5], [1.5, 2.5, 3.5]).rotate_z(30deg)",
+        ),
         ("cylinder(r: 2, h: 3).inset(0.5)", "cylinder(r: 1.5, from: [0, 0, 0.5], to: [0, 0, 2.5])"),
         ("half_space(z < 1).offset(0.5) & sphere(r: 2)", "half_space(z < 1.5) & sphere(r: 2)"),
         ("(sphere(r: 2) & half_space(z < 1)).inset(0.5)", "sphere(r: 1.5) & half_space(z < 0.5)"),
         ("(sphere(r: 2) - sphere(r: 1)).inset(0.25)", "sphere(r: 1.75) - sphere(r: 1.25)"),
-        ("(sphere(r: 2) | sphere(r: 1, at: [2, 0, 0])).offset(0.25)", "sphere(r: 2.25) | sphere(r: 1.25, at: [2, 0, 0])"),
+        (
+            "(sphere(r: 2) | sphere(r: 1, at: [2, 0, 0])).offset(0.25)",
+            "sphere(r: 2.25) | sphere(r: 1.25, at: [2, 0, 0])",
+        ),
     ];
     let mut scratch = Scratch::default();
     for (moved, want) in cases {
@@ -262,7 +275,9 @@ fn an_offset_of_a_cloud_with_creases_has_round_edges_and_no_gaps() {
 #[test]
 fn the_cap_of_a_closed_scan_moves_with_the_rest() {
     let bowl = "(points(sphere(r: 1), samples: 8000).clip(half_space(z < 0.5)))";
-    let open = prepared(&format!("draw points(sphere(r: 1) & half_space(z < 0.5), samples: 8000).inset(0.2) & box(size: 9)"));
+    let open = prepared(&format!(
+        "draw points(sphere(r: 1) & half_space(z < 0.5), samples: 8000).inset(0.2) & box(size: 9)"
+    ));
     let _ = bowl;
     let mut scratch = Scratch::default();
     let found = spans(&open.shot, &Ray::new(DVec3::new(0.1, 0.0, 3.0), -DVec3::Z), &mut scratch);

@@ -10,7 +10,7 @@ mod sweep;
 mod tree;
 mod truth;
 
-pub use clip::{Clippee, Clipped};
+pub use clip::{Clipped, Clippee};
 pub use object::{Object, Scratch};
 pub use spans::{Boundary, Span, Spans};
 pub use tree::{Expr, Kind, Leaf, Tree};

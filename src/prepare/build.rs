@@ -121,7 +121,8 @@ impl<'a> Builder<'a> {
         let surface = surface_of(&samples, &options);
         let notes = samples.notes.clone();
         self.scans.push(ScanReport { name: name.to_owned(), samples: samples.len(), notes });
-        let scan = Scan { samples, sampling, options, surface, measured: None, holes: None, closed: Vec::new() };
+        let scan =
+            Scan { samples, sampling, options, surface, measured: None, holes: None, closed: Vec::new() };
         self.scan.push(scan);
         ScanId(self.scan.len() - 1)
     }
@@ -130,6 +131,16 @@ impl<'a> Builder<'a> {
     pub fn parts(&self, id: ScanId) -> (&Samples, SampleOptions, Options) {
         let scan = &self.scan[id.0];
         (&scan.samples, scan.sampling, scan.options)
+    }
+
+    /// Adds to what is told about a scan.
+    pub fn note(&mut self, id: ScanId, note: String) {
+        self.scans[id.0].notes.push(note);
+    }
+
+    /// Whether the holes of a scan have been looked for.
+    pub fn holes_known(&self, id: ScanId) -> bool {
+        self.scan[id.0].holes.is_some()
     }
 
     /// The holes of a scan, once they were looked for.

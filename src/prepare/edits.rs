@@ -123,7 +123,8 @@ impl Edit {
             return Ok(());
         }
         let word = self.word();
-        let told = format!("no exact offset: `.{word}` of a combination by `{}` has another shape", op.sign());
+        let told =
+            format!("no exact offset: `.{word}` of a combination by `{}` has another shape", op.sign());
         let error = Diagnostic::error("E0307", told).at(self.at, "").at(at, combination);
         Err(error.help(format!(
             "call `.{word}` on the operands; `.inset` passes through `&` and `-`, `.offset` through `|`"
@@ -175,7 +176,11 @@ impl Builder<'_> {
     }
 
     /// A scan closed, or the error that a hole is too wide.
-    pub fn close(&mut self, id: ScanId, close: &Closing) -> Result<Arc<crate::solid::point_set::PointSet>, Diagnostic> {
+    pub fn close(
+        &mut self,
+        id: ScanId,
+        close: &Closing,
+    ) -> Result<Arc<crate::solid::point_set::PointSet>, Diagnostic> {
         let Closing { max_hole, scale, at } = *close;
         self.closed(id, max_hole).map_err(|widest| too_wide(at, max_hole * scale, widest * scale))
     }

@@ -9,7 +9,7 @@ use super::build::{Builder, Built, exact};
 use super::edits::{Change, Edit, Edits, Stage, edits};
 use super::samples::{Sampling, sample};
 use crate::cloud::Cloud;
-use crate::csg::{Clippee, Clipped, Expr, Leaf, Object};
+use crate::csg::{Clipped, Clippee, Expr, Leaf, Object};
 use crate::diag::Diagnostic;
 use crate::geom::{Aabb, Placement};
 use crate::scene::{BooleanOp, Call, FitTo, MaterialId, Operand, Shape, ShapeKind, Value};
@@ -178,8 +178,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
         child: &Shape,
         context: Context,
     ) -> Result<Lowered, Diagnostic> {
-        let edit =
-            Edit { change, frame: context.world_from_local, turned: context.turned, at: shape.0.at };
+        let edit = Edit { change, frame: context.world_from_local, turned: context.turned, at: shape.0.at };
         let edits = Edits { edit, outer: context.edits };
         self.lower(child, Context { edits: Some(&edits), ..context })
     }
@@ -205,9 +204,8 @@ impl<'b, 'o> Lowering<'b, 'o> {
             Lowered::Sheets(sheets) => sheets.into_iter().map(|s| (s.clone(), Clippee::Sheet(s))).collect(),
             Lowered::Solid(expr) => {
                 let object = Arc::new(Object::new(clipped.leaves, &expr));
-                let face = |(i, leaf): (usize, &Leaf)| {
-                    (leaf.clone(), Clippee::Faces(object.clone(), i as u32))
-                };
+                let face =
+                    |(i, leaf): (usize, &Leaf)| (leaf.clone(), Clippee::Faces(object.clone(), i as u32));
                 object.leaves().iter().enumerate().map(face).collect::<Vec<_>>()
             }
         };
@@ -238,6 +236,9 @@ impl<'b, 'o> Lowering<'b, 'o> {
             return Ok(self.builder.unmeasured(id));
         }
         let (solidity, surface) = self.builder.measured(id);
+        if surface.body() == Body::Sheet && self.builder.bounds_a_solid(id) {
+            return Ok(self.builder.mended(id, &solidity));
+        }
         match context.wanted {
             Some((sign, at)) if sign != BooleanOp::Union.sign() && surface.body() == Body::Sheet => {
                 Err(no_inside(sign, at, &solidity.complaint()))

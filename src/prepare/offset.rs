@@ -17,8 +17,8 @@ use crate::cloud::{Cloud, Samples};
 use crate::diag::Diagnostic;
 use crate::geom::{Interval, Ray};
 use crate::num::hash::Stream;
-use crate::solid::point_set::{FieldScratch, PointSet};
-use crate::solid::{Crossing, Scratch, Solid};
+use crate::solid::point_set::{FieldScratch, PointSet, Solidity};
+use crate::solid::{Body, Crossing, Scratch, Solid};
 use crate::source::Span;
 
 /// By what a moved scan was made: of which, whether it was closed, and how far.
@@ -104,9 +104,35 @@ impl Builder<'_> {
         result.notes.push(format!("{dropped} samples nearer than that to the rest were dropped"));
         let made = self.add(&name, result, sampling, options);
         let note = boundary.thickness_error(&self.unmeasured(made), scale);
-        self.scans.last_mut().into_iter().for_each(|report| report.notes.push(note.clone()));
+        self.note(made, note);
         self.moved.push((key, made));
         Ok(made)
+    }
+
+    /// Whether a scan was made by moving the boundary of a solid.
+    pub fn bounds_a_solid(&mut self, id: ScanId) -> bool {
+        let mut made = id;
+        while let Some((from, closed)) =
+            self.moved.iter().find(|(_, m)| *m == made).map(|((from, closed, _), _)| (*from, *closed))
+        {
+            if closed || self.measured(from).1.body() == Body::Solid {
+                return true;
+            }
+            made = from;
+        }
+        false
+    }
+
+    /// A moved scan that is no solid by itself although it was made of one: a sharp ridge, where two sides of what is left
+    /// meet, is finer than its samples tell. It is closed as a scan with holes is, and that is noted.
+    pub fn mended(&mut self, id: ScanId, solidity: &Solidity) -> Arc<PointSet> {
+        let known = self.holes_known(id);
+        let surface = self.closed(id, f64::INFINITY).unwrap_or_else(|_| self.unmeasured(id));
+        if !known {
+            let share = 100.0 * solidity.odd_share();
+            self.note(id, format!("its sharp edges were closed: {share:.2} % of test lines crossed it an odd number of times"));
+        }
+        surface
     }
 
     /// Samples of the caps of a closed scan: the crossings of random chords through each hole, thinned.

@@ -1,23 +1,35 @@
 //! Scenes from text.
-#![allow(dead_code)]
+
+use std::path::Path;
 
 use pss::csg::{Scratch, Spans};
-use pss::geom::{Interval, Ray};
 use pss::diag::Diagnostic;
+use pss::geom::{Interval, Ray};
 use pss::prepare::{self, Options, Prepared};
 use pss::shot::Shot;
 use pss::source::SourceMap;
 
-fn read(text: &str) -> Result<Prepared, Vec<Diagnostic>> {
+fn read(text: &str, folder: &Path) -> Result<Prepared, Vec<Diagnostic>> {
     let mut sources = SourceMap::default();
-    let file = sources.add("test.pss", None, text.to_owned());
+    let file = sources.add("test.pss", Some(folder.join("test.pss")), text);
     let (scene, _) = pss::lang::read(&mut sources, file, &prepare::catalog(), &[])?;
-    prepare::prepare(&scene, &Options { measure_all: true, scene_dir: env!("CARGO_MANIFEST_DIR").into(), allow_read: vec!["../shared/scans".into()], ..Options::default() })
+    let options = Options { measure_all: true, scene_dir: folder.to_owned(), ..Options::default() };
+    prepare::prepare(&scene, &options)
+}
+
+/// A scene's text, prepared as if it lay in a folder, with what was found on the way.
+pub fn prepared_in(text: &str, folder: &Path) -> Prepared {
+    read(text, folder).unwrap_or_else(|e| panic!("{text}\n{e:?}"))
+}
+
+/// What is wrong with a scene's text in a folder.
+pub fn errors_in(text: &str, folder: &Path) -> Vec<Diagnostic> {
+    read(text, folder).err().unwrap_or_default()
 }
 
 /// A scene's text, prepared, with what was found on the way.
 pub fn prepared(text: &str) -> Prepared {
-    read(text).unwrap_or_else(|e| panic!("{text}\n{e:?}"))
+    prepared_in(text, Path::new("."))
 }
 
 /// A scene's text, prepared.
@@ -27,7 +39,7 @@ pub fn shot(text: &str) -> Shot {
 
 /// What is wrong with a scene's text.
 pub fn errors(text: &str) -> Vec<Diagnostic> {
-    read(text).err().unwrap_or_default()
+    errors_in(text, Path::new("."))
 }
 
 /// All spans of a ray's line.

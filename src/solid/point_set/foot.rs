@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
+use super::PointSet;
 use super::field::FieldScratch;
 use super::line::part;
 use super::probe::Room;
-use super::PointSet;
 use crate::mls::{Sample, Stray};
 use crate::solid::Crossing;
 

@@ -239,16 +239,18 @@ impl Thick {
             let guess = guess + 0.25 * tolerance * if guess < middle { 1.0 } else { -1.0 };
             let guess = if a.s < guess && guess < b.s { guess } else { middle };
             let next = place(guess);
-            if next.inside == a.inside {
-                a = next
-            } else {
-                b = next
-            }
+            if next.inside == a.inside { a = next } else { b = next }
         }
         let inner = if entering { b } else { a };
         let outer = if entering { a } else { b };
         let part = match (outer.foot, inner.foot) {
-            (Some([s, _, e]), _) if e < 0.0 => if s < 0.0 { part::BACK } else { part::FRONT },
+            (Some([s, _, e]), _) if e < 0.0 => {
+                if s < 0.0 {
+                    part::BACK
+                } else {
+                    part::FRONT
+                }
+            }
             _ => part::RIM,
         };
         Found { s: 0.5 * (a.s + b.s), err: 0.5 * (b.s - a.s), entering, part }
