@@ -174,6 +174,24 @@ fn case_75_a_scan_minus_its_own_inset_has_a_constant_wall() {
 }
 
 #[test]
+fn the_cap_of_a_closed_scan_moves_with_the_rest() {
+    let (points, normals) = ball_where(10_000, |p| p.z < 0.5);
+    let folder = folder(&points, &normals);
+    let text = "let bowl = points(\"a.ply\").close()\ndraw bowl - bowl.inset(0.2)";
+    let scene = prepared_in(text, folder.path());
+    println!("{:?}", scene.scans);
+    for (x, y) in [(0.0, 0.0), (0.3, 0.2), (-0.2, 0.3)] {
+        let found = cast(&scene, &down(x, y));
+        assert_eq!(found.len(), 2, "{x} {y}: {:?}", ends(&found));
+        let cap = found[0].interval().length();
+        assert!((cap - 0.2).abs() < 0.01, "the wall of the cap is {cap}");
+        let below = |r: f64| (r * r - x * x - y * y).sqrt();
+        let wall = found[1].interval().length();
+        assert!((wall - (below(1.0) - below(0.8))).abs() < 1e-3, "the wall below is {wall}");
+    }
+}
+
+#[test]
 fn case_76_a_scan_xor_itself_shifted_is_that_of_the_balls() {
     let scan = prepared("let a = points(sphere(r: 1), samples: 8000)\ndraw a ^ a.move([0.3, 0.1, 0])");
     let exact = prepared("draw sphere(r: 1) ^ sphere(r: 1, at: [0.3, 0.1, 0])");

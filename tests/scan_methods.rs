@@ -12,9 +12,9 @@ use pss::geom::Ray;
 use pss::solid::point_set::{Options, PointSet};
 use pss::solid::{self, Body, Solid};
 
-fn surface(points: Vec<DVec3>, normals: Vec<DVec3>) -> (PointSet, f64) {
+fn surface(points: Vec<DVec3>, normals: Vec<DVec3>, width: Option<f64>) -> (PointSet, f64) {
     let cloud = Cloud { points, normals: Some(normals), ..Cloud::default() };
-    let samples = Samples::new(cloud, &SampleOptions::default()).unwrap();
+    let samples = Samples::new(cloud, &SampleOptions { width, ..SampleOptions::default() }).unwrap();
     let mut widths = samples.widths.clone();
     widths.sort_by(f64::total_cmp);
     let width = widths[widths.len() / 2];
@@ -24,21 +24,27 @@ fn surface(points: Vec<DVec3>, normals: Vec<DVec3>) -> (PointSet, f64) {
 fn hemisphere(n: usize) -> (PointSet, f64) {
     let (points, normals) = Truth::Sphere.cloud(n);
     let (points, normals) = points.into_iter().zip(normals).filter(|(p, _)| 0.0 < p.z).unzip();
-    surface(points, normals)
+    surface(points, normals, None)
 }
 
 /// A square grid in the plane z = 0 over [-1, 1]^2.
-fn grid(n: i32) -> (PointSet, f64) {
+fn grid(n: i32, width: Option<f64>) -> (PointSet, f64) {
     let at = |i: i32| f64::from(2 * i - (n - 1)) / f64::from(n - 1);
     let points: Vec<DVec3> = (0..n * n).map(|i| DVec3::new(at(i % n), at(i / n), 0.0)).collect();
     let normals = vec![DVec3::Z; points.len()];
-    surface(points, normals)
+    surface(points, normals, width)
 }
 
 /// F6: residual 0, and the edge where the samples end.
 #[test]
 fn f6_a_thickened_plane_is_a_slab_that_ends_where_the_samples_end() {
-    let (set, h) = grid(41);
+    // Automatic widths are 1.4 times wider at the edge and let the surface go on a little further.
+    slab_ends(None, 0.26);
+    slab_ends(Some(0.1), 0.1);
+}
+
+fn slab_ends(width: Option<f64>, most: f64) {
+    let (set, h) = grid(41, width);
     let spacing = 2.0 / 40.0;
     for d in [0.1 * h, h, 4.0 * h, 1.0] {
         let thick = set.thickened(d);
@@ -78,14 +84,14 @@ fn f6_a_thickened_plane_is_a_slab_that_ends_where_the_samples_end() {
         assert!(worst < 1e-9, "{worst:e}");
         // The last row stands for half a spacing beyond it.
         let off = [low, high].map(|e| (e - 0.5 * spacing).abs() / h);
-        assert!(off[0].max(off[1]) < 0.26, "{off:?}");
+        assert!(off[0].max(off[1]) < most, "{off:?}");
         assert!((high - low) / h < 0.1);
     }
 }
 
 #[test]
 fn a_thickened_hemisphere_is_a_shell_of_that_thickness() {
-    let (set, h) = hemisphere(20_000);
+    let (set, h) = hemisphere(8000);
     for d in [0.2 * h, 1.0 * h, 4.0 * h, 0.6] {
         let thick = set.thickened(d);
         let mut scratch = solid::Scratch::default();
@@ -103,7 +109,7 @@ fn a_thickened_hemisphere_is_a_shell_of_that_thickness() {
             let normal = thick.normal(&ray, &found[1], &mut scratch);
             assert!((normal - to).length() < 1e-3, "{normal} {to}");
         }
-        for i in 0..1500 {
+        for i in 0..800 {
             let found = all_of(&thick, &chord(i, DVec3::ZERO, 1.0 + d), &mut scratch);
             odd += found.len() % 2;
             crossings += found.len();
@@ -123,12 +129,12 @@ fn a_thickened_hemisphere_is_a_shell_of_that_thickness() {
 /// Chords of the shell against the closed form: a half shell that ends at the rim's plane.
 #[test]
 fn every_wall_of_a_thickened_hemisphere_is_found() {
-    let (set, h) = hemisphere(5000);
+    let (set, h) = hemisphere(4000);
     for d in [0.5 * h, 3.0 * h] {
         let thick = set.thickened(d);
         let mut scratch = solid::Scratch::default();
         let mut wrong = 0;
-        for i in 0..2000 {
+        for i in 0..1000 {
             let ray = chord(i, DVec3::ZERO, 1.5);
             let found = all_of(&thick, &ray, &mut scratch);
             // Points that are clearly in or out by the closed form.
@@ -245,7 +251,7 @@ fn an_inset_and_an_offset_scan_lie_at_their_distance() {
 /// Creases: an offset cube's edges and corners are round, an inset one's sharp and its samples dropped there.
 #[test]
 fn an_offset_of_a_cloud_with_creases_has_round_edges_and_no_gaps() {
-    let cube = "points(box([-1, -1, -1], [1, 1, 1]), samples: 12000)";
+    let cube = "points(box([-1, -1, -1], [1, 1, 1]), samples: 8000)";
     for (word, by) in [("offset", 0.5), ("inset", 0.3)] {
         let shot = shot(&format!("draw {cube}.{word}({by}) & box(size: 9)"));
         let (mut scratch, mut worst, mut missed) = (Scratch::default(), 0.0f64, 0);
@@ -269,21 +275,6 @@ fn an_offset_of_a_cloud_with_creases_has_round_edges_and_no_gaps() {
         assert_eq!(missed, 0);
         assert!(worst < 0.06, "{worst}");
     }
-}
-
-/// A closed bowl: the cap is part of the boundary and moves too.
-#[test]
-fn the_cap_of_a_closed_scan_moves_with_the_rest() {
-    let bowl = "(points(sphere(r: 1), samples: 8000).clip(half_space(z < 0.5)))";
-    let open = prepared(&format!(
-        "draw points(sphere(r: 1) & half_space(z < 0.5), samples: 8000).inset(0.2) & box(size: 9)"
-    ));
-    let _ = bowl;
-    let mut scratch = Scratch::default();
-    let found = spans(&open.shot, &Ray::new(DVec3::new(0.1, 0.0, 3.0), -DVec3::Z), &mut scratch);
-    assert_eq!(found.len(), 1);
-    let top = 3.0 - found[0].interval().lo;
-    assert!((top - 0.3).abs() < 0.005, "{top}");
 }
 
 #[test]

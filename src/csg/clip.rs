@@ -14,7 +14,7 @@ use crate::solid::{self, Answer, Body, Crossing, Solid};
 #[derive(Clone, Debug)]
 pub enum Clippee {
     /// A sheet.
-    Sheet(Leaf),
+    Sheet(Box<Leaf>),
     /// The faces that one leaf of an object owns.
     Faces(Arc<Object>, u32),
 }

@@ -201,7 +201,9 @@ impl<'b, 'o> Lowering<'b, 'o> {
         let by = Arc::new(Object::new(cutter.leaves, &expr));
         let mut clipped = Lowering::new(self.builder, self.measure_all);
         let sheets = match clipped.lower(child, own)? {
-            Lowered::Sheets(sheets) => sheets.into_iter().map(|s| (s.clone(), Clippee::Sheet(s))).collect(),
+            Lowered::Sheets(sheets) => {
+                sheets.into_iter().map(|s| (s.clone(), Clippee::Sheet(s.into()))).collect()
+            }
             Lowered::Solid(expr) => {
                 let object = Arc::new(Object::new(clipped.leaves, &expr));
                 let face =
