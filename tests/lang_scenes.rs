@@ -41,7 +41,10 @@ fn leaf(shape: &Shape) -> (&Call, &str) {
         ShapeKind::Transform { child, .. }
         | ShapeKind::Fit { child, .. }
         | ShapeKind::With { child, .. }
-        | ShapeKind::Close { child, .. } => leaf(child),
+        | ShapeKind::Close { child, .. }
+        | ShapeKind::Thicken { child, .. }
+        | ShapeKind::Offset { child, .. }
+        | ShapeKind::Clip { child, .. } => leaf(child),
         ShapeKind::Boolean { .. } => panic!("not a leaf: {shape:?}"),
     }
 }

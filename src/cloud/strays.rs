@@ -17,6 +17,10 @@ const BODY: f64 = 0.05;
 /// not seen to change so much between neighbouring groups of a scan.
 const THIN: f64 = 3.0;
 
+/// Samples farther apart than this many of the smaller of their widths, three spacings, do not belong together: thinly
+/// strewn ones have wide weights and would else tie themselves to any surface in their midst.
+const REACH: f64 = 1.5;
+
 /// Points that fill space have a roughness near 0.2 among 16 neighbours, noisy scans below 0.05.
 const ROUGH: f64 = 0.1;
 
@@ -44,8 +48,7 @@ pub fn strays(points: &[DVec3], spacing: &[f64], widths: &[f64], table: &Table) 
     let mut strays = vec![false; points.len()];
     for group in groups.iter().filter(|group| !is_body(group)) {
         let is_stray = group.len() < LEAST_GROUP.min(largest)
-            || THIN < median(group, &mut thinness)
-                && ROUGH < median(group, &mut |i| roughness(points, i as usize, NORMAL_NEIGHBOURS, table));
+            || THIN < median(group, &mut thinness) && ROUGH < roughness_of(points, group);
         group.iter().for_each(|&i| strays[i as usize] = is_stray);
     }
     strays
@@ -56,12 +59,21 @@ fn labels(points: &[DVec3], widths: &[f64], table: &Table) -> Vec<u32> {
     for (i, p) in points.iter().enumerate() {
         for &j in table.row(i) {
             let j = j as usize;
-            if p.distance_squared(points[j]) <= widths[i] * widths[j] {
+            let narrow = REACH * widths[i].min(widths[j]);
+            if p.distance_squared(points[j]) <= (widths[i] * widths[j]).min(narrow * narrow) {
                 groups.join(i, j);
             }
         }
     }
     groups.labels()
+}
+
+/// The median roughness of a group by itself: a body beside it would pass for its neighbourhood.
+fn roughness_of(points: &[DVec3], group: &[u32]) -> f64 {
+    let own: Vec<DVec3> = group.iter().map(|&i| points[i as usize]).collect();
+    let table = Neighbours::new(&own).table(NORMAL_NEIGHBOURS);
+    let all: Vec<u32> = (0..own.len() as u32).collect();
+    median(&all, &mut |i| roughness(&own, i as usize, NORMAL_NEIGHBOURS, &table))
 }
 
 fn median(group: &[u32], value: &mut impl FnMut(u32) -> f64) -> f64 {

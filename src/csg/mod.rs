@@ -2,6 +2,7 @@
 //! answers which parts of a ray are inside. No concrete solid is known here.
 
 mod cleanup;
+mod clip;
 mod object;
 mod owner;
 mod spans;
@@ -9,6 +10,7 @@ mod sweep;
 mod tree;
 mod truth;
 
+pub use clip::{Clipped, Clippee};
 pub use object::{Object, Scratch};
 pub use spans::{Boundary, Span, Spans};
 pub use tree::{Expr, Kind, Leaf, Tree};

@@ -16,6 +16,13 @@ pub struct Scratch {
     room: Room,
 }
 
+impl Scratch {
+    /// With what a solid lends.
+    pub(super) fn lent(solid: solid::Scratch) -> Scratch {
+        Scratch { solid, room: Room::default() }
+    }
+}
+
 /// A solid made of solids.
 #[derive(Clone, Debug, Default)]
 pub struct Object {

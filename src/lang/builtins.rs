@@ -34,6 +34,6 @@ pub fn functions() -> impl Iterator<Item = &'static Builtin> {
 
 /// Words of the language that are not carried out yet.
 pub const LATER: &[&str] = &[
-    "mirror", "matrix", "array", "around", "instance", "cut", "inset", "offset", "clip", "thicken", "bounds",
-    "inside", "volume", "area", "centroid", "empty", "solid", "raycast", "rand", "count", "implicit",
+    "mirror", "matrix", "array", "around", "instance", "cut", "bounds", "inside", "volume", "area",
+    "centroid", "empty", "solid", "raycast", "rand", "count", "implicit",
 ];

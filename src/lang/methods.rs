@@ -7,7 +7,7 @@ use super::builtins::Builtin;
 use super::units::sin_cos;
 use super::value::{Eval, Val};
 use crate::diag::Diagnostic;
-use crate::scene::{FitTo, Shape, ShapeKind};
+use crate::scene::{FitTo, Operand, Shape, ShapeKind};
 
 const MOVE: &[Formal] = &[Formal::place("by")];
 const TURN: &[Formal] = &[Formal::place("angle"), Formal::named("about").optional()];
@@ -17,6 +17,8 @@ const FIT: &[Formal] =
     &[Formal::place("at"), Formal::named("height").optional(), Formal::named("size").optional()];
 const WITH: &[Formal] = &[Formal::place("material")];
 const CLOSE: &[Formal] = &[Formal::named("max_hole").optional()];
+const BY: &[Formal] = &[Formal::place("d")];
+const CLIP: &[Formal] = &[Formal::place("solid")];
 
 /// The methods.
 pub const TABLE: &[Builtin] = &[
@@ -54,6 +56,30 @@ pub const TABLE: &[Builtin] = &[
     },
     Builtin { name: "with", formals: WITH, doc: "Wears a material where it has none.", call: with },
     Builtin { name: "close", formals: CLOSE, doc: "The holes of an open scan capped.", call: close },
+    Builtin {
+        name: "thicken",
+        formals: BY,
+        doc: "An open surface given a thickness, half of it to each side.",
+        call: thicken,
+    },
+    Builtin {
+        name: "inset",
+        formals: BY,
+        doc: "A solid whose boundary is moved inward.",
+        call: |b| offset(b, -1.0),
+    },
+    Builtin {
+        name: "offset",
+        formals: BY,
+        doc: "A solid whose boundary is moved outward.",
+        call: |b| offset(b, 1.0),
+    },
+    Builtin {
+        name: "clip",
+        formals: CLIP,
+        doc: "The surface that lies inside a solid, without a cap: a Sheet.",
+        call: clip,
+    },
 ];
 
 fn node(bound: &Bound, kind: impl FnOnce(Shape) -> ShapeKind) -> Eval<Val> {
@@ -168,6 +194,28 @@ fn close(bound: &Bound) -> Eval<Val> {
         None => None,
     };
     node(bound, |child| ShapeKind::Close { max_hole, child })
+}
+
+fn thicken(bound: &Bound) -> Eval<Val> {
+    let by = distance(bound)?;
+    node(bound, |child| ShapeKind::Thicken { by, child })
+}
+
+fn offset(bound: &Bound, sign: f64) -> Eval<Val> {
+    let by = sign * distance(bound)?;
+    node(bound, |child| ShapeKind::Offset { by, child })
+}
+
+/// The argument `d`, above zero.
+fn distance(bound: &Bound) -> Eval<f64> {
+    let given = bound.need("d")?;
+    above_zero(given.as_number("d", "a length")?, "d", given.at)
+}
+
+fn clip(bound: &Bound) -> Eval<Val> {
+    let given = bound.need("solid")?;
+    let by = Operand { shape: given.shape("solid")?.clone(), at: given.at };
+    node(bound, |child| ShapeKind::Clip { by, child })
 }
 
 fn above_zero(x: f64, name: &str, at: crate::source::Span) -> Eval<f64> {

@@ -19,6 +19,7 @@ use crate::solid::{Body, Counts, Solid, points};
 #[derive(Debug)]
 struct Scan {
     samples: Samples,
+    sampling: SampleOptions,
     options: Options,
     surface: Arc<PointSet>,
     measured: Option<(Solidity, Arc<PointSet>)>,
@@ -49,6 +50,10 @@ pub(super) struct Builder<'a> {
     /// By the address of the node, which lives as long as the scene.
     built: HashMap<usize, Built>,
     scan: Vec<Scan>,
+    /// Scans made of scans by moving their boundary, and what they were made by.
+    pub moved: Vec<(super::offset::Key, ScanId)>,
+    /// Scans given a thickness, own units.
+    pub thick: Vec<((ScanId, f64), Arc<dyn Solid>)>,
     /// What the user should know.
     pub warnings: Vec<Diagnostic>,
     /// Files that were read.
@@ -67,6 +72,8 @@ impl<'a> Builder<'a> {
             materials,
             built: HashMap::new(),
             scan: Vec::new(),
+            moved: Vec::new(),
+            thick: Vec::new(),
             warnings: Vec::new(),
             inputs: Vec::new(),
             counts: Counts::default(),
@@ -125,12 +132,39 @@ impl<'a> Builder<'a> {
             keep_strays: false,
         };
         let samples = Samples::new(cloud, &options).map_err(|e| cloud_complaint(call, "the cloud", e))?;
-        let options = points::options(call);
+        Ok(self.add(name, samples, options, points::options(call)))
+    }
+
+    /// Adds a scan.
+    pub fn add(&mut self, name: &str, samples: Samples, sampling: SampleOptions, options: Options) -> ScanId {
         let surface = surface_of(&samples, &options);
         let notes = samples.notes.clone();
         self.scans.push(ScanReport { name: name.to_owned(), samples: samples.len(), notes });
-        self.scan.push(Scan { samples, options, surface, measured: None, holes: None, closed: Vec::new() });
-        Ok(ScanId(self.scan.len() - 1))
+        let scan =
+            Scan { samples, sampling, options, surface, measured: None, holes: None, closed: Vec::new() };
+        self.scan.push(scan);
+        ScanId(self.scan.len() - 1)
+    }
+
+    /// What a scan is made from: its samples and how they and the surface were made.
+    pub fn parts(&self, id: ScanId) -> (&Samples, SampleOptions, Options) {
+        let scan = &self.scan[id.0];
+        (&scan.samples, scan.sampling, scan.options)
+    }
+
+    /// Adds to what is told about a scan.
+    pub fn note(&mut self, id: ScanId, note: String) {
+        self.scans[id.0].notes.push(note);
+    }
+
+    /// Whether the holes of a scan have been looked for.
+    pub fn holes_known(&self, id: ScanId) -> bool {
+        self.scan[id.0].holes.is_some()
+    }
+
+    /// The holes of a scan, once they were looked for.
+    pub fn known_holes(&self, id: ScanId) -> &[Hole] {
+        self.scan[id.0].holes.as_deref().unwrap_or_default()
     }
 
     /// The surface as it stands: a sheet, its solidity not asked for.

@@ -24,6 +24,11 @@ impl Lowering<'_, '_> {
                 self.extent(child, &(*to_from * fitted))
             }
             ShapeKind::With { child, .. } | ShapeKind::Close { child, .. } => self.extent(child, to_from),
+            ShapeKind::Thicken { by, child } => Ok(grown(self.extent(child, to_from)?, 0.5 * by, to_from)),
+            ShapeKind::Offset { by, child } => Ok(grown(self.extent(child, to_from)?, *by, to_from)),
+            ShapeKind::Clip { by, child } => {
+                Ok(self.extent(child, to_from)?.intersection(self.extent(&by.shape, to_from)?))
+            }
             ShapeKind::Boolean { op, operands } => self.extent_of(*op, operands, to_from),
         }
     }
@@ -46,4 +51,11 @@ impl Lowering<'_, '_> {
         }
         Ok(all)
     }
+}
+
+/// A box grown by the image of a ball, which reaches the length of the map's row along each axis.
+fn grown(bounds: Aabb, by: f64, to_from: &DAffine3) -> Aabb {
+    let rows = to_from.matrix3.transpose();
+    let reach = by * glam::DVec3::new(rows.x_axis.length(), rows.y_axis.length(), rows.z_axis.length());
+    Aabb { min: bounds.min - reach, max: bounds.max + reach }
 }

@@ -6,9 +6,10 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::build::{Builder, Built, exact};
+use super::edits::{Change, Edit, Edits, Stage, edits};
 use super::samples::{Sampling, sample};
 use crate::cloud::Cloud;
-use crate::csg::{Expr, Leaf, Object};
+use crate::csg::{Clipped, Clippee, Expr, Leaf, Object};
 use crate::diag::Diagnostic;
 use crate::geom::{Aabb, Placement};
 use crate::scene::{BooleanOp, Call, FitTo, MaterialId, Operand, Shape, ShapeKind, Value};
@@ -36,22 +37,25 @@ pub(super) struct Lowering<'b, 'o> {
 
 /// What a node inherits from above.
 #[derive(Clone, Copy)]
-struct Context {
+struct Context<'a> {
     world_from_local: DAffine3,
     material: Option<MaterialId>,
     cutter: bool,
-    /// Whether an operator above asks for an inside, with the sign and the place of the operand.
-    wanted: Option<(BooleanOp, Span)>,
-    /// A `.close` above: the widest hole, in units of the frame of its own node, and that frame.
-    close: Option<(f64, DAffine3, Span)>,
+    /// Whether an odd number of complements stands above: what grows the whole shrinks this.
+    turned: bool,
+    /// Whether an operator above asks for an inside, with its sign and the place of the operand.
+    wanted: Option<(&'static str, Span)>,
+    /// What the methods above change about the leaves, the innermost first.
+    edits: Option<&'a Edits<'a>>,
 }
 
 const TOP: Context = Context {
     world_from_local: DAffine3::IDENTITY,
     material: None,
     cutter: false,
+    turned: false,
     wanted: None,
-    close: None,
+    edits: None,
 };
 
 /// A lowered shape.
@@ -96,9 +100,11 @@ impl<'b, 'o> Lowering<'b, 'o> {
                 self.lower(child, Context { material: Some(*material), ..context })
             }
             ShapeKind::Close { max_hole, child } => {
-                let close = Some((max_hole.unwrap_or(f64::INFINITY), context.world_from_local, shape.0.at));
-                self.lower(child, Context { close, ..context })
+                self.edited(shape, Change::Close(max_hole.unwrap_or(f64::INFINITY)), child, context)
             }
+            ShapeKind::Thicken { by, child } => self.edited(shape, Change::Thicken(*by), child, context),
+            ShapeKind::Offset { by, child } => self.edited(shape, Change::Move(*by), child, context),
+            ShapeKind::Clip { by, child } => self.clip(child, by, context),
             ShapeKind::Boolean { op, operands } => self.boolean(shape, *op, operands, context),
         }
     }
@@ -110,20 +116,18 @@ impl<'b, 'o> Lowering<'b, 'o> {
         operands: &[Operand],
         context: Context,
     ) -> Result<Lowered, Diagnostic> {
-        if let Some((_, _, at)) = context.close {
-            let error = Diagnostic::error("E0304", "only a scan has holes to close").at(at, "");
-            return Err(error
-                .at(shape.0.at, "this is a combination of shapes")
-                .help("close the scan before combining it"));
+        for edit in edits(context.edits) {
+            edit.check_through(op, context.turned, shape.0.at)?;
         }
         let mut parts = Vec::with_capacity(operands.len());
         for (i, operand) in operands.iter().enumerate() {
             let taken = op == BooleanOp::Complement || (op == BooleanOp::Difference && 0 < i);
             let context = Context {
                 cutter: context.cutter || taken,
+                turned: context.turned != taken,
                 // A cutter keeps its own material or shows the base's: `.with` above stops here.
                 material: if taken { None } else { context.material },
-                wanted: Some((op, operand.at)),
+                wanted: Some((op.sign(), operand.at)),
                 ..context
             };
             parts.push((self.lower(&operand.shape, context)?, operand.at));
@@ -135,7 +139,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
         for (part, at) in parts {
             match part {
                 Lowered::Solid(expr) => exprs.push(expr),
-                Lowered::Sheets(_) => return Err(no_inside(op, at, "a Sheet: an open surface")),
+                Lowered::Sheets(_) => return Err(no_inside(op.sign(), at, "a Sheet: an open surface")),
             }
         }
         Ok(Lowered::Solid(combined(op, exprs)))
@@ -148,7 +152,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
         name: &str,
         context: Context,
     ) -> Result<Lowered, Diagnostic> {
-        let solid = self.solid(shape, context)?;
+        let solid = self.solid(shape, name, context)?;
         let place = Placement::new(context.world_from_local).ok_or_else(|| {
             Diagnostic::error("E0505", "a transform leaves nothing of this shape, or too little to invert")
                 .at(call.at, "")
@@ -166,37 +170,83 @@ impl<'b, 'o> Lowering<'b, 'o> {
         Ok(Lowered::Solid(Expr::Leaf(self.leaves.len() as u32 - 1)))
     }
 
-    /// The solid of a leaf, closed or measured as what stands above it asks.
-    fn solid(&mut self, shape: &Shape, context: Context) -> Result<Arc<dyn Solid>, Diagnostic> {
-        let id = match (self.built(shape)?, context.close) {
-            (Built::Exact(_), Some((_, _, at))) => {
-                return Err(Diagnostic::error("E0304", "only a scan has holes to close").at(at, ""));
+    /// A node that changes the leaves below it.
+    fn edited(
+        &mut self,
+        shape: &Shape,
+        change: Change,
+        child: &Shape,
+        context: Context,
+    ) -> Result<Lowered, Diagnostic> {
+        let edit = Edit { change, frame: context.world_from_local, turned: context.turned, at: shape.0.at };
+        let edits = Edits { edit, outer: context.edits };
+        self.lower(child, Context { edits: Some(&edits), ..context })
+    }
+
+    /// The surface of a shape inside a solid: a sheet for each leaf that has a part in it.
+    fn clip(&mut self, child: &Shape, by: &Operand, context: Context) -> Result<Lowered, Diagnostic> {
+        if let Some(Edits { edit, .. }) = context.edits {
+            let error = Diagnostic::error("E0304", "a clipped surface is an open one that ends sharply");
+            return Err(error
+                .at(edit.at, "")
+                .at(by.at, "clipped by this")
+                .help("close, thicken or move the shape first, and clip it last"));
+        }
+        let own = Context { wanted: None, edits: None, turned: false, cutter: false, ..context };
+        let asked = Context { wanted: Some((".clip", by.at)), material: None, ..own };
+        let mut cutter = Lowering::new(self.builder, self.measure_all);
+        let Lowered::Solid(expr) = cutter.lower(&by.shape, asked)? else {
+            return Err(no_inside(".clip", by.at, "a Sheet: an open surface"));
+        };
+        let by = Arc::new(Object::new(cutter.leaves, &expr));
+        let mut clipped = Lowering::new(self.builder, self.measure_all);
+        let sheets = match clipped.lower(child, own)? {
+            Lowered::Sheets(sheets) => {
+                sheets.into_iter().map(|s| (s.clone(), Clippee::Sheet(s.into()))).collect()
             }
-            (Built::Exact(solid), None) => return Ok(solid),
-            (Built::Scan(id), _) if self.builder.lacks_color(id, context.material) => {
-                let error =
-                    Diagnostic::error("E0307", "its material takes its colour from the scan, which has none");
-                return Err(error.at(shape.0.at, "").help(
-                    "take a scan with `red green blue`, or a material of one colour: `matte(#b8683c)`",
-                ));
+            Lowered::Solid(expr) => {
+                let object = Arc::new(Object::new(clipped.leaves, &expr));
+                let face =
+                    |(i, leaf): (usize, &Leaf)| (leaf.clone(), Clippee::Faces(object.clone(), i as u32));
+                object.leaves().iter().enumerate().map(face).collect::<Vec<_>>()
             }
-            (Built::Scan(id), Some((max_hole, frame, at))) => {
-                // Lengths of the frame that `.close` is written in, taken to the scan's own.
-                let scale = mean_scale(&(frame.inverse() * context.world_from_local));
-                return match self.builder.closed(id, max_hole / scale) {
-                    Ok(surface) => Ok(surface),
-                    Err(widest) => Err(too_wide(at, max_hole, widest * scale)),
-                };
+        };
+        let sheet = |(leaf, of): (Leaf, Clippee)| {
+            let clipped = Leaf::new(Arc::new(Clipped { of, by: by.clone() }), Placement::IDENTITY);
+            Leaf { solid: clipped.solid, place: clipped.place, bounds: clipped.bounds, ..leaf }
+        };
+        Ok(Lowered::Sheets(sheets.into_iter().map(sheet).collect()))
+    }
+
+    /// The solid of a leaf, edited and measured as what stands above it asks.
+    fn solid(&mut self, shape: &Shape, name: &str, context: Context) -> Result<Arc<dyn Solid>, Diagnostic> {
+        let mut stage = match self.built(shape)? {
+            Built::Exact(solid) => Stage::Exact(solid),
+            Built::Scan(id) if self.builder.lacks_color(id, context.material) => {
+                return Err(colorless(shape));
             }
-            (Built::Scan(id), None) => id,
+            Built::Scan(id) => Stage::Scan(id),
+        };
+        for edit in edits(context.edits) {
+            // Lengths of the frame that the method is written in, taken to the leaf's own.
+            let map = edit.frame.inverse() * context.world_from_local;
+            stage = self.builder.edit(stage, &edit.in_frame(&map, context.turned)?, name)?;
+        }
+        let id = match stage {
+            Stage::Exact(solid) => return Ok(solid),
+            Stage::Closed(id, ref close) => return Ok(self.builder.close(id, close)?),
+            Stage::Scan(id) => id,
         };
         if context.wanted.is_none() && !self.measure_all {
             return Ok(self.builder.unmeasured(id));
         }
         let (solidity, surface) = self.builder.measured(id);
+        if surface.body() == Body::Sheet && self.builder.bounds_a_solid(id) {
+            return Ok(self.builder.mended(id, &solidity));
+        }
         match context.wanted {
-            Some((op, at)) if op != BooleanOp::Union && surface.body() == Body::Sheet => {
-                Err(no_inside(op, at, &solidity.complaint()))
+            Some((sign, at)) if sign != BooleanOp::Union.sign() && surface.body() == Body::Sheet => {
+                Err(no_inside(sign, at, &solidity.complaint()))
             }
             _ => Ok(surface),
         }
@@ -318,28 +368,14 @@ fn joined_sheets(parts: Vec<(Lowered, Span)>) -> Result<Lowered, Diagnostic> {
     Ok(Lowered::Sheets(sheets))
 }
 
-fn no_inside(op: BooleanOp, at: Span, why: &str) -> Diagnostic {
-    Diagnostic::error("E0301", format!("an operand of `{}` has no inside", op.sign())).at(at, why).help(
-        "close it, `scan.close(max_hole: 8mm)`, take more samples if its walls are thin, or put a solid in its place, such as `half_space(z < 0)` for a floor",
+fn no_inside(sign: &str, at: Span, why: &str) -> Diagnostic {
+    Diagnostic::error("E0301", format!("an operand of `{sign}` has no inside")).at(at, why).help(
+        "close it, `scan.close(max_hole: 8mm)`, give it a thickness, `scan.thicken(2mm)`, take more samples if its walls are thin, or put a solid in its place, such as `half_space(z < 0)` for a floor",
     )
 }
 
-fn too_wide(at: Span, max_hole: f64, widest: f64) -> Diagnostic {
-    Diagnostic::error(
-        "E0303",
-        format!("the scan has a hole {widest:.3} wide, wider than the {max_hole} allowed"),
-    )
-    .at(at, "")
-    .help(format!("write `.close(max_hole: {})` if that hole shall be capped too", round_up(widest) as f32))
-}
-
-/// Two significant digits, upward.
-fn round_up(x: f64) -> f64 {
-    let unit = 10f64.powf(x.log10().floor() - 1.0);
-    (x / unit).ceil() * unit
-}
-
-/// How much a map stretches lengths: exactly so for similarities, on average for others.
-fn mean_scale(map: &DAffine3) -> f64 {
-    map.matrix3.determinant().abs().cbrt()
+fn colorless(shape: &Shape) -> Diagnostic {
+    Diagnostic::error("E0307", "its material takes its colour from the scan, which has none")
+        .at(shape.0.at, "")
+        .help("take a scan with `red green blue`, or a material of one colour: `matte(#b8683c)`")
 }

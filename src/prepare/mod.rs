@@ -1,12 +1,14 @@
 //! A scene made ready to trace: what is drawn is built, placed and bounded; what nothing draws is never touched.
 //!
-//! [`build`] makes solids of calls, [`samples`] takes samples of solids, [`files`] says what may be read, [`lower`]
+//! [`build`] makes solids of calls, [`edits`] and [`offset`] what methods make of them, [`samples`] takes samples of solids, [`files`] says what may be read, [`lower`]
 //! turns shapes into leaves and one set expression. Text and pixels are left to others.
 
 mod build;
+mod edits;
 mod extent;
 mod files;
 mod lower;
+mod offset;
 mod samples;
 
 use std::path::PathBuf;

@@ -86,7 +86,10 @@ impl ShapeKind {
             ShapeKind::Transform { child, .. }
             | ShapeKind::Fit { child, .. }
             | ShapeKind::With { child, .. }
-            | ShapeKind::Close { child, .. } => out.push(child),
+            | ShapeKind::Close { child, .. }
+            | ShapeKind::Thicken { child, .. }
+            | ShapeKind::Offset { child, .. } => out.push(child),
+            ShapeKind::Clip { child, by } => out.extend([child, by.shape]),
         }
     }
 }
@@ -149,6 +152,27 @@ pub enum ShapeKind {
         /// The widest hole to cap, scene units of the frame it is written in; `None`: any.
         max_hole: Option<f64>,
         /// The scan.
+        child: Shape,
+    },
+    /// An open surface given a thickness, half of it to each side.
+    Thicken {
+        /// The thickness, scene units of the frame it is written in; above zero.
+        by: f64,
+        /// The surface.
+        child: Shape,
+    },
+    /// The boundary of a solid moved along its normals.
+    Offset {
+        /// How far, scene units of the frame it is written in: outward above zero, inward below.
+        by: f64,
+        /// The solid.
+        child: Shape,
+    },
+    /// The surface of a shape that lies inside a solid, without caps.
+    Clip {
+        /// The solid.
+        by: Operand,
+        /// The shape.
         child: Shape,
     },
 }

@@ -52,7 +52,7 @@ fn build(call: &Call) -> Result<Arc<dyn Solid>, BuildError> {
     }
 }
 
-/// The points of a box. A ray that runs in a face is inside iff the face is the low one.
+/// The points of a box, perhaps unbounded. A ray that runs in a face is inside iff the face is the low one.
 #[derive(Clone, Copy, Debug)]
 pub struct Block(pub Aabb);
 
@@ -87,6 +87,14 @@ impl Solid for Block {
             out.push(Crossing::exact(exit.0, false, exit.1));
         }
         Answer::whole_line(false)
+    }
+
+    fn moved(&self, by: f64) -> Result<Option<Arc<dyn Solid>>, &'static str> {
+        if 0.0 < by {
+            return Err("what lies near a box has rounded edges");
+        }
+        let inner = self.0.inflated(by);
+        Ok(inner.min.cmplt(inner.max).all().then(|| Arc::new(Block(inner)) as Arc<dyn Solid>))
     }
 
     fn normal(&self, _: &Ray, crossing: &Crossing, _: &mut Scratch) -> DVec3 {

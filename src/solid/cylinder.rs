@@ -124,6 +124,16 @@ impl Solid for Cylinder {
         miss
     }
 
+    fn moved(&self, by: f64) -> Result<Option<Arc<dyn Solid>>, &'static str> {
+        if 0.0 < by {
+            return Err("what lies near a cylinder has rounded edges");
+        }
+        let axis = self.across_along.transpose().z_axis;
+        let left = 0.0 < self.radius + by && 0.0 < self.height + 2.0 * by;
+        let (from, to) = (self.from - by * axis, self.to + by * axis);
+        Ok(left.then(|| Arc::new(Cylinder::new(self.radius + by, from, to)) as Arc<dyn Solid>))
+    }
+
     fn normal(&self, ray: &Ray, crossing: &Crossing, _: &mut Scratch) -> DVec3 {
         let across_along = self.across_along.transpose();
         let axis = across_along.z_axis;

@@ -69,6 +69,10 @@ impl Solid for HalfSpace {
         Answer::whole_line(0.0 < slope)
     }
 
+    fn moved(&self, by: f64) -> Result<Option<Arc<dyn Solid>>, &'static str> {
+        Ok(Some(Arc::new(HalfSpace { normal: self.normal, offset: self.offset + by })))
+    }
+
     fn normal(&self, _: &Ray, _: &Crossing, _: &mut Scratch) -> DVec3 {
         self.normal
     }

@@ -12,6 +12,7 @@ pub mod sphere;
 pub mod table;
 
 use std::fmt::Debug;
+use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
@@ -75,6 +76,18 @@ pub trait Solid: Send + Sync + Debug {
         0.0
     }
 
+    /// The solid with its boundary moved along the normals: outward by `by` where that is above zero, inward below
+    /// (own units): the points nearer to it than `by`, and those farther than that from its outside. `Ok(None)` where
+    /// nothing is left, an error in words where that is no solid of the same kind.
+    fn moved(&self, _by: f64) -> Result<Option<Arc<dyn Solid>>, &'static str> {
+        Err("its moved boundary is no solid that is known in closed form")
+    }
+
+    /// A sheet with a thickness, `by` / 2 to each side (own units); `None` where it has an inside already.
+    fn thickened(&self, _by: f64) -> Option<Arc<dyn Solid>> {
+        None
+    }
+
     /// Whether asking costs much more than a closed form: such solids are asked last.
     fn is_costly(&self) -> bool {
         false
@@ -90,6 +103,8 @@ pub struct Scratch {
     pub lines: Vec<point_set::LineScratch>,
     /// Room for asking a point set surface about points.
     pub field: point_set::FieldScratch,
+    /// The same for each thickened surface.
+    pub thick: Vec<point_set::ThickLine>,
 }
 
 /// Counts of work. Sums of them do not depend on the order of work.

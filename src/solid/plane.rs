@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::block::Block;
 use super::table::{Build, Primitive};
 use super::{Answer, Body, Crossing, Scratch, Solid};
 use crate::geom::{Aabb, Interval, Ray};
@@ -67,6 +68,14 @@ impl Solid for Plane {
             }
         }
         Answer { inside: false, range: Interval::new(range.lo, f64::INFINITY) }
+    }
+
+    fn thickened(&self, by: f64) -> Option<Arc<dyn Solid>> {
+        let along = self.normal.cmpeq(DVec3::ONE);
+        let face = |far: f64, near: f64| DVec3::select(along, DVec3::splat(near), DVec3::splat(far));
+        let min = face(f64::NEG_INFINITY, self.at - 0.5 * by);
+        let max = face(f64::INFINITY, self.at + 0.5 * by);
+        Some(Arc::new(Block(Aabb { min, max })))
     }
 
     fn normal(&self, _: &Ray, _: &Crossing, _: &mut Scratch) -> DVec3 {

@@ -75,6 +75,15 @@ impl Solid for Sphere {
         Answer::whole_line(false)
     }
 
+    fn moved(&self, by: f64) -> Result<Option<Arc<dyn Solid>>, &'static str> {
+        if self.radii.min_element() != self.radii.max_element() {
+            return Err("what lies at one distance from an ellipsoid is no ellipsoid");
+        }
+        let radii = self.radii + by;
+        let left = 0.0 < self.radii.x && 0.0 < radii.x;
+        Ok(left.then(|| Arc::new(Sphere { center: self.center, radii }) as Arc<dyn Solid>))
+    }
+
     fn normal(&self, ray: &Ray, crossing: &Crossing, _: &mut Scratch) -> DVec3 {
         let p = (ray.at(crossing.t) - self.center) / self.radii;
         (p / self.radii).normalize()

@@ -149,6 +149,17 @@ pub fn chord(i: u64, center: DVec3, radius: f64) -> pss::geom::Ray {
     pss::geom::Ray::chord(&mut pss::num::hash::Stream::new(i ^ 0x5eed), center, radius)
 }
 
+/// All crossings of a line with any solid.
+pub fn all_of(
+    solid: &dyn pss::solid::Solid,
+    ray: &pss::geom::Ray,
+    scratch: &mut pss::solid::Scratch,
+) -> Vec<pss::solid::Crossing> {
+    let mut out = Vec::new();
+    solid.crossings(ray, pss::geom::Interval::ALL, scratch, &mut out);
+    out
+}
+
 /// All crossings of a line, asked for until the answers reach its end.
 pub fn all(
     set: &pss::solid::point_set::PointSet,

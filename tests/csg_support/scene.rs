@@ -1,19 +1,45 @@
 //! Scenes from text.
 
+use std::path::Path;
+
 use pss::csg::{Scratch, Spans};
+use pss::diag::Diagnostic;
 use pss::geom::{Interval, Ray};
-use pss::prepare::{self, Options};
+use pss::prepare::{self, Options, Prepared};
 use pss::shot::Shot;
 use pss::source::SourceMap;
 
+fn read(text: &str, folder: &Path) -> Result<Prepared, Vec<Diagnostic>> {
+    let mut sources = SourceMap::default();
+    let file = sources.add("test.pss", Some(folder.join("test.pss")), text);
+    let (scene, _) = pss::lang::read(&mut sources, file, &prepare::catalog(), &[])?;
+    let options = Options { measure_all: true, scene_dir: folder.to_owned(), ..Options::default() };
+    prepare::prepare(&scene, &options)
+}
+
+/// A scene's text, prepared as if it lay in a folder, with what was found on the way.
+pub fn prepared_in(text: &str, folder: &Path) -> Prepared {
+    read(text, folder).unwrap_or_else(|e| panic!("{text}\n{e:?}"))
+}
+
+/// What is wrong with a scene's text in a folder.
+pub fn errors_in(text: &str, folder: &Path) -> Vec<Diagnostic> {
+    read(text, folder).err().unwrap_or_default()
+}
+
+/// A scene's text, prepared, with what was found on the way.
+pub fn prepared(text: &str) -> Prepared {
+    prepared_in(text, Path::new("."))
+}
+
 /// A scene's text, prepared.
 pub fn shot(text: &str) -> Shot {
-    let mut sources = SourceMap::default();
-    let file = sources.add("test.pss", None, text.to_owned());
-    let read = pss::lang::read(&mut sources, file, &prepare::catalog(), &[]);
-    let (scene, _) = read.unwrap_or_else(|e| panic!("{text}\n{e:?}"));
-    let prepared = prepare::prepare(&scene, &Options { measure_all: true, ..Options::default() });
-    prepared.unwrap_or_else(|e| panic!("{text}\n{e:?}")).shot
+    prepared(text).shot
+}
+
+/// What is wrong with a scene's text.
+pub fn errors(text: &str) -> Vec<Diagnostic> {
+    errors_in(text, Path::new("."))
 }
 
 /// All spans of a ray's line.

@@ -15,6 +15,10 @@ impl FieldScratch {
     pub fn projections(&self) -> u64 {
         self.0.projections
     }
+
+    pub(super) fn room(&mut self) -> &mut Room {
+        &mut self.0
+    }
 }
 
 impl PointSet {

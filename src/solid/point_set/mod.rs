@@ -7,11 +7,13 @@ mod caps;
 mod certificate;
 mod color;
 mod field;
+mod foot;
 mod hierarchy;
 mod line;
 mod probe;
 mod roots;
 mod solidity;
+mod thick;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -20,9 +22,11 @@ use glam::{DAffine3, DVec3};
 
 pub use caps::Closure;
 pub use field::FieldScratch;
+pub use foot::Foot;
 pub use hierarchy::{Hierarchy, Reach};
 pub use line::LineScratch;
 pub use solidity::Solidity;
+pub use thick::{Thick, ThickLine};
 
 use crate::cloud::neighbours::Neighbours;
 use crate::cloud::winding::Winding;
