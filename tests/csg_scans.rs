@@ -124,8 +124,8 @@ fn case_74_a_plane_caps_a_scan_flat() {
 
 /// What a moved scan says of its distance: the error at 99 of 100 places, percent.
 fn distance_error(scene: &Prepared) -> f64 {
-    let notes = scene.scans.iter().flat_map(|s| &s.notes);
-    let note = notes.filter(|n| n.contains("off by")).next_back().expect("a moved scan reports its distance");
+    let mut notes = scene.scans.iter().flat_map(|s| &s.notes);
+    let note = notes.rfind(|n| n.contains("off by")).expect("a moved scan reports its distance");
     println!("{note}");
     let at = note.find("at 99").unwrap();
     note[..at].split_whitespace().rev().nth(1).unwrap().parse().unwrap()
