@@ -375,7 +375,7 @@ fn no_inside(sign: &str, at: Span, why: &str) -> Diagnostic {
 }
 
 fn colorless(shape: &Shape) -> Diagnostic {
-    Diagnostic::error("E0307", "its material takes its colour from the scan, which has none")
+    Diagnostic::error("E0310", "its material takes its colour from the scan, which has none")
         .at(shape.0.at, "")
         .help("take a scan with `red green blue`, or a material of one colour: `matte(#b8683c)`")
 }

@@ -10,6 +10,7 @@ mod files;
 mod lower;
 mod offset;
 mod samples;
+pub mod survey;
 
 use std::path::PathBuf;
 

@@ -16,10 +16,14 @@ pub enum Truth {
     /// All points [`SLAB`] away from a disc of radius 1: two parallel faces, three widths of 10,000 samples apart,
     /// with a round rim.
     Slab,
+    /// The same with [`PLATE`], three widths of 2,000 samples.
+    Plate,
 }
 
 /// Half the thickness of the slab.
 pub const SLAB: f64 = 0.105;
+/// Half the thickness of the plate.
+pub const PLATE: f64 = 0.25;
 
 impl Truth {
     pub const ALL: [Truth; 3] = [Truth::Sphere, Truth::Torus, Truth::Blob];
@@ -32,7 +36,10 @@ impl Truth {
             Truth::Sphere => 4.0 * PI,
             Truth::Torus => 1.6 * PI * PI,
             Truth::Blob => 14.1,
-            Truth::Slab => 2.0 * PI + 2.0 * PI * PI * SLAB + 4.0 * PI * SLAB * SLAB,
+            Truth::Slab | Truth::Plate => {
+                let a = self.half();
+                2.0 * PI + 2.0 * PI * PI * a + 4.0 * PI * a * a
+            }
         }
     }
 
@@ -41,25 +48,31 @@ impl Truth {
     }
 
     /// The place at a share `u` of the area, from the middle of the lower face over the rim to that of the upper.
-    fn slab_sample(u: f64, (cos, sin): (f64, f64)) -> (DVec3, DVec3) {
+    fn slab_sample(self, u: f64, (cos, sin): (f64, f64)) -> (DVec3, DVec3) {
         use std::f64::consts::PI;
-        let area = u * Truth::Slab.area();
-        let top = Truth::Slab.area() - PI;
+        let area = u * self.area();
+        let top = self.area() - PI;
         let (radius, normal) = if area < PI {
             ((area / PI).sqrt(), [0.0, -1.0])
         } else if top < area {
-            (((Truth::Slab.area() - area) / PI).sqrt(), [0.0, 1.0])
+            (((self.area() - area) / PI).sqrt(), [0.0, 1.0])
         } else {
             // The rim's area up to latitude w is 2 pi a (w + pi / 2 + a (sin w + 1)) for minor radius a.
-            let part = (area - PI) / (2.0 * PI * SLAB);
+            let part = (area - PI) / (2.0 * PI * self.half());
             let mut w = 0.0;
             for _ in 0..60 {
-                w -= (w + 0.5 * PI + SLAB * (f64::sin(w) + 1.0) - part) / (1.0 + SLAB * f64::cos(w));
+                w -= (w + 0.5 * PI + self.half() * (f64::sin(w) + 1.0) - part)
+                    / (1.0 + self.half() * f64::cos(w));
             }
             (1.0, [w.cos(), w.sin()])
         };
         let n = DVec3::new(normal[0] * cos, normal[0] * sin, normal[1]);
-        (DVec3::new(radius * cos, radius * sin, 0.0) + SLAB * n, n)
+        (DVec3::new(radius * cos, radius * sin, 0.0) + self.half() * n, n)
+    }
+
+    /// Half the thickness of a slab.
+    fn half(self) -> f64 {
+        if self == Truth::Plate { PLATE } else { SLAB }
     }
 
     /// Zero on the surface, positive outside; a distance for sphere and torus.
@@ -68,7 +81,7 @@ impl Truth {
             Truth::Sphere => p.length() - 1.0,
             Truth::Torus => (p.x.hypot(p.z) - 1.0).hypot(p.y) - 0.4,
             Truth::Blob => p.length() - Truth::blob_radius(p / p.length()),
-            Truth::Slab => (p.x.hypot(p.y) - 1.0).max(0.0).hypot(p.z) - SLAB,
+            Truth::Slab | Truth::Plate => (p.x.hypot(p.y) - 1.0).max(0.0).hypot(p.z) - self.half(),
         }
     }
 
@@ -88,7 +101,10 @@ impl Truth {
         match self {
             Truth::Sphere => 12f64.sqrt(),
             Truth::Torus => (2.0 * 2.8f64.powi(2) + 0.8f64.powi(2)).sqrt(),
-            Truth::Slab => ((2.0 + 2.0 * SLAB).powi(2) * 2.0 + (2.0 * SLAB).powi(2)).sqrt(),
+            Truth::Slab | Truth::Plate => {
+                let a = self.half();
+                ((2.0 + 2.0 * a).powi(2) * 2.0 + (2.0 * a).powi(2)).sqrt()
+            }
             Truth::Blob => {
                 let (p, _) = self.cloud(20_000);
                 pss::geom::Aabb::of_points(p).diagonal()
@@ -113,8 +129,8 @@ impl Truth {
                     let p = DVec3::new(c * cos, 0.4 * w.sin(), c * sin);
                     return (p, DVec3::new(w.cos() * cos, w.sin(), w.cos() * sin));
                 }
-                if self == Truth::Slab {
-                    return Truth::slab_sample(u, (cos, sin));
+                if matches!(self, Truth::Slab | Truth::Plate) {
+                    return self.slab_sample(u, (cos, sin));
                 }
                 let z = 1.0 - 2.0 * u;
                 let s = (1.0 - z * z).sqrt();

@@ -24,6 +24,77 @@ pub enum Command {
     Render(RenderArgs),
     /// List where rays go in and out of what a scene draws
     Probe(ProbeArgs),
+    /// Say what a cloud of points is like, or convert it
+    #[command(subcommand)]
+    Cloud(CloudCommand),
+}
+
+/// What is done with clouds.
+#[derive(Subcommand, Debug)]
+pub enum CloudCommand {
+    /// Print what the program sees: extent, spacing, noise, widths, normals, holes, Solid or Sheet
+    Info(InfoArgs),
+    /// Write a cloud as PLY
+    Convert(ConvertArgs),
+}
+
+/// Arguments of `cloud info`.
+#[derive(Group, Debug)]
+pub struct InfoArgs {
+    /// PLY files
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// One JSON object a file, a line each
+    #[arg(long)]
+    pub json: bool,
+    /// What every command on clouds takes.
+    #[command(flatten)]
+    pub common: CloudArgs,
+}
+
+/// Arguments of `cloud convert`.
+#[derive(Group, Debug)]
+pub struct ConvertArgs {
+    /// The cloud
+    pub file: PathBuf,
+    /// Where to, .ply
+    pub out: PathBuf,
+    /// Text instead of binary
+    #[arg(long)]
+    pub ascii: bool,
+    /// Add normals, estimated and oriented, where there are none
+    #[arg(long)]
+    pub normals: bool,
+    /// Only the samples that a surface is made of: merged, without strays
+    #[arg(long)]
+    pub clean: bool,
+    /// What every command on clouds takes.
+    #[command(flatten)]
+    pub common: CloudArgs,
+}
+
+/// What every command on clouds takes.
+#[derive(Group, Clone, Copy, Debug)]
+pub struct CloudArgs {
+    /// Threads; 0 for all cores
+    #[arg(short, long, value_name = "N", default_value_t = 0, value_parser = threads)]
+    pub threads: usize,
+    /// How messages look on standard error
+    #[arg(long, value_enum, default_value_t = MessageFormat::Text)]
+    pub format: MessageFormat,
+}
+
+impl Command {
+    /// How messages look, and how many threads work.
+    pub fn common(&self) -> CloudArgs {
+        let of = |scene: &SceneArgs| CloudArgs { threads: scene.threads, format: scene.format };
+        match self {
+            Command::Render(args) => of(&args.scene),
+            Command::Probe(args) => of(&args.scene),
+            Command::Cloud(CloudCommand::Info(args)) => args.common,
+            Command::Cloud(CloudCommand::Convert(args)) => args.common,
+        }
+    }
 }
 
 /// What every command that reads a scene takes.

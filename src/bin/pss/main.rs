@@ -2,6 +2,7 @@
 //! output and process state; everything else is the library's.
 
 mod args;
+mod cloud;
 mod console;
 mod load;
 mod probe;
@@ -23,19 +24,16 @@ fn main() -> ExitCode {
         Ok(args) => args,
         Err(e) => return ExitCode::from(misused(&e)),
     };
-    let scene = match &args.command {
-        Command::Render(render) => &render.scene,
-        Command::Probe(probe) => &probe.scene,
-    };
-    let console = Console::new(scene.format);
+    let args::CloudArgs { threads, format } = args.command.common();
+    let console = Console::new(format);
     console::keep_panics_quiet();
-    let threads = scene.threads;
     let done = std::panic::catch_unwind(|| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|e| Failure::internal(format!("cannot start {threads} threads: {e}")))?;
         pool.install(|| match &args.command {
             Command::Render(args) => render::run(args, &console),
             Command::Probe(args) => probe::run(args, &console),
+            Command::Cloud(command) => cloud::run(command),
         })
     });
     let done = done.unwrap_or_else(|_| Err(Failure::internal("the program went wrong".to_owned())));

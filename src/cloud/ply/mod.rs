@@ -1,4 +1,4 @@
-//! The PLY reader: ASCII and binary of both byte orders, any element, any property, streamed so that memory
+//! The PLY reader (and, in [`write()`], a small writer): ASCII and binary of both byte orders, any element, any property, streamed so that memory
 //! stays near that of the result. An own reader, since a stray `nan` row must be dropped, not end the file,
 //! and no count of a header may be believed before it is compared with the length of the file.
 
@@ -6,10 +6,13 @@ mod columns;
 mod header;
 mod input;
 mod vertices;
+mod write;
 
 use std::fs::{File, Metadata};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
+
+pub use write::{Encoding, write};
 
 use super::{Cloud, CloudError, check_extent};
 

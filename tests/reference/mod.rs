@@ -1,0 +1,177 @@
+//! The surface once more, by other means: all points, no tree, no cut, the plane by BFGS on gradients alone, the polynomial by
+//! QR. Shares no code with the kernel; slow and plain on purpose.
+#![allow(dead_code)]
+
+use glam::DVec3;
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+
+/// A cloud and how it is read.
+pub struct Reference {
+    pub points: Vec<DVec3>,
+    pub normals: Vec<DVec3>,
+    pub widths: Vec<f64>,
+    pub gaussian: bool,
+    /// Whether samples that face another way weigh less.
+    pub same_way: bool,
+    pub degree: usize,
+}
+
+impl Reference {
+    /// theta and its derivative by rho = |x|^2 / h^2.
+    fn weight(&self, rho: f64) -> [f64; 2] {
+        if self.gaussian {
+            return [(-rho).exp(), -(-rho).exp()];
+        }
+        if 8.0 <= rho {
+            return [0.0; 2];
+        }
+        let s = 1.0 - rho / 8.0;
+        [s.powi(8), -s.powi(7)]
+    }
+
+    /// The factor of a sample whose outward normal makes the cosine c with the plane's, and its derivative: one from
+    /// c = 0.1 on, none below -0.6, the quintic smoothstep between.
+    fn facing(&self, c: f64) -> [f64; 2] {
+        let x = (c + 0.6) / 0.7;
+        if !self.same_way || 1.0 <= x {
+            return [1.0, 0.0];
+        }
+        if x <= 0.0 {
+            return [0.0; 2];
+        }
+        [x.powi(3) * (10.0 - 15.0 * x + 6.0 * x * x), 30.0 * x * x * (1.0 - x) * (1.0 - x) / 0.7]
+    }
+
+    /// The sample nearest in its own widths, and the squared ratio.
+    pub fn nearest(&self, r: DVec3) -> (usize, f64) {
+        let ratio = |i: usize| (self.points[i] - r).length_squared() / (self.widths[i] * self.widths[i]);
+        (0..self.points.len()).map(|i| (i, ratio(i))).min_by(|a, b| a.1.total_cmp(&b.1)).unwrap()
+    }
+
+    /// J and its gradient by (n, t), n free in space.
+    fn energy(&self, r: DVec3, n: DVec3, t: f64) -> (f64, DVec3, f64) {
+        let (mut energy, mut by_n, mut by_t) = (0.0, DVec3::ZERO, 0.0);
+        for i in 0..self.points.len() {
+            let d = self.points[i] - r;
+            let ih2 = 1.0 / (self.widths[i] * self.widths[i]);
+            let s = n.dot(d) - t;
+            let [w, w1] = self.weight((d - t * n).length_squared() * ih2);
+            if w == 0.0 {
+                continue;
+            }
+            let [f, f1] = self.facing(-self.normals[i].dot(n));
+            energy += f * w * s * s;
+            // |d - t n|^2 = |d|^2 - 2 t n.d + t^2 on the unit sphere.
+            by_n += f * (2.0 * w * s - 2.0 * t * s * s * w1 * ih2) * d - w * s * s * f1 * self.normals[i];
+            by_t += f * (-2.0 * w * s + s * s * w1 * ih2 * 2.0 * (t - n.dot(d)));
+        }
+        (energy, by_n, by_t)
+    }
+
+    /// The start: the weighted mean of samples that face like the surface next to r, across their mean normal.
+    fn start(&self, r: DVec3) -> Option<(DVec3, f64)> {
+        let (nearest, ratio) = self.nearest(r);
+        if 1.0 <= ratio {
+            return None;
+        }
+        let means = |at: DVec3, narrow: f64, outward: Option<DVec3>| {
+            let (mut total, mut place, mut normal) = (0.0, DVec3::ZERO, DVec3::ZERO);
+            for i in 0..self.points.len() {
+                let d = self.points[i] - at;
+                let mut w = self.weight(narrow * d.length_squared() / self.widths[i].powi(2))[0];
+                if let Some(outward) = outward {
+                    w *= self.facing(self.normals[i].dot(outward))[0];
+                }
+                total += w;
+                place += w * d;
+                normal += w * self.normals[i];
+            }
+            (total, place, normal)
+        };
+        let mut outward = self.normals[nearest];
+        let mut foot = r - outward * outward.dot(r - self.points[nearest]);
+        // Half as wide: the nearer side of a thin wall decides.
+        let (total, place, normal) = means(r, 4.0, None);
+        if 0.2 * total < normal.length() {
+            outward = normal.normalize();
+            foot = r + outward * outward.dot(place / total);
+        }
+        let (total, place, normal) = means(foot, 1.0, Some(outward));
+        let n = -(normal / total).try_normalize()?;
+        Some((n, n.dot(foot + place / total - r)))
+    }
+
+    /// The local minimum of J by BFGS in (two turns of n, t), the frame renewed with n.
+    fn plane(&self, r: DVec3) -> Option<(DVec3, f64)> {
+        let (mut n, mut t) = self.start(r)?;
+        let h = self.widths[self.nearest(r).0];
+        let gradient = |n: DVec3, t: f64, e: [DVec3; 2]| {
+            let (energy, by_n, by_t) = self.energy(r, n, t);
+            (energy, Vector3::new(by_n.dot(e[0]), by_n.dot(e[1]), by_t * h))
+        };
+        let (e1, e2) = n.any_orthonormal_pair();
+        let mut e = [e1, e2];
+        let (mut energy, mut g) = gradient(n, t, e);
+        let mut inverse = Matrix3::identity() * (0.1 * h * h / energy.max(1e-3 * h * h)) / (h * h);
+        for _ in 0..200 {
+            let mut step = -(inverse * g);
+            if 0.3 < step.norm() {
+                step *= 0.3 / step.norm();
+            }
+            let mut by = 1.0;
+            let (next, next_t, next_e, next_energy, next_g) = loop {
+                let m = (n + by * (step.x * e[0] + step.y * e[1])).normalize();
+                let u = (e[0] - m * m.dot(e[0])).normalize();
+                let frame = [u, m.cross(u) * m.cross(u).dot(e[1]).signum()];
+                let tt = t + by * step.z * h;
+                let (value, grad) = gradient(m, tt, frame);
+                if value <= energy * (1.0 + 1e-14) || by < 1e-6 {
+                    break (m, tt, frame, value, grad);
+                }
+                by *= 0.5;
+            };
+            let (s, y) = (step * by, next_g - g);
+            (n, t, e, energy, g) = (next, next_t, next_e, next_energy, next_g);
+            if s.norm() < 1e-13 {
+                return Some((n, t));
+            }
+            let sy = s.dot(&y);
+            if 0.0 < sy {
+                let a = Matrix3::identity() - s * y.transpose() / sy;
+                inverse = a * inverse * a.transpose() + s * s.transpose() / sy;
+            }
+        }
+        Some((n, t))
+    }
+
+    /// F, where the start lies inside a trust sphere; positive outside.
+    pub fn value(&self, r: DVec3) -> Option<f64> {
+        let (n, t) = self.plane(r)?;
+        let h = self.widths[self.nearest(r).0];
+        let q = r + t * n;
+        let (e1, e2) = n.any_orthonormal_pair();
+        let (mut rows, mut heights, mut vote) = (Vec::new(), Vec::new(), 0.0);
+        for i in 0..self.points.len() {
+            let x = self.points[i] - q;
+            let w = self.weight(x.length_squared() / self.widths[i].powi(2))[0]
+                * self.facing(-self.normals[i].dot(n))[0];
+            if w == 0.0 {
+                continue;
+            }
+            vote += w * self.normals[i].dot(n);
+            let (u, v) = (x.dot(e1) / h, x.dot(e2) / h);
+            for a in 0..=self.degree {
+                rows.extend((0..=self.degree - a).map(|b| w.sqrt() * u.powi(a as i32) * v.powi(b as i32)));
+            }
+            heights.push(w.sqrt() * x.dot(n) / h);
+        }
+        let columns = (self.degree + 1) * (self.degree + 2) / 2;
+        if heights.len() < columns {
+            return None;
+        }
+        let qr = DMatrix::from_row_slice(heights.len(), columns, &rows).qr();
+        let right = qr.q().transpose() * DVector::from_vec(heights);
+        let c = qr.r().solve_upper_triangular(&right)?;
+        Some(-vote.signum() * (t + c[0] * h))
+    }
+}
