@@ -146,6 +146,12 @@ impl Reference {
 
     /// F, where the start lies inside a trust sphere; positive outside.
     pub fn value(&self, r: DVec3) -> Option<f64> {
+        let fit = self.fit(r)?;
+        Some(fit.sign * ((fit.q - r).dot(fit.frame[2]) + fit.height([0.0; 2])))
+    }
+
+    /// Plane and polynomial at a point.
+    pub fn fit(&self, r: DVec3) -> Option<Fit> {
         let (n, t) = self.plane(r)?;
         let h = self.widths[self.nearest(r).0];
         let q = r + t * n;
@@ -159,10 +165,8 @@ impl Reference {
                 continue;
             }
             vote += w * self.normals[i].dot(n);
-            let (u, v) = (x.dot(e1) / h, x.dot(e2) / h);
-            for a in 0..=self.degree {
-                rows.extend((0..=self.degree - a).map(|b| w.sqrt() * u.powi(a as i32) * v.powi(b as i32)));
-            }
+            let terms = monomials(self.degree, [x.dot(e1) / h, x.dot(e2) / h]);
+            rows.extend(terms.into_iter().map(|m| w.sqrt() * m));
             heights.push(w.sqrt() * x.dot(n) / h);
         }
         let columns = (self.degree + 1) * (self.degree + 2) / 2;
@@ -170,8 +174,58 @@ impl Reference {
             return None;
         }
         let qr = DMatrix::from_row_slice(heights.len(), columns, &rows).qr();
-        let right = qr.q().transpose() * DVector::from_vec(heights);
-        let c = qr.r().solve_upper_triangular(&right)?;
-        Some(-vote.signum() * (t + c[0] * h))
+        let c = qr.r().solve_upper_triangular(&(qr.q().transpose() * DVector::from_vec(heights)))?;
+        Some(Fit {
+            q,
+            frame: [e1, e2, n],
+            h,
+            degree: self.degree,
+            c: c.as_slice().to_vec(),
+            sign: -vote.signum(),
+        })
     }
+}
+
+/// A plane with a polynomial over it.
+pub struct Fit {
+    pub q: DVec3,
+    /// In the plane, in the plane, across it.
+    pub frame: [DVec3; 3],
+    h: f64,
+    degree: usize,
+    c: Vec<f64>,
+    sign: f64,
+}
+
+impl Fit {
+    /// The polynomial's height at a place of the plane.
+    pub fn height(&self, [x, y]: [f64; 2]) -> f64 {
+        let terms = monomials(self.degree, [x / self.h, y / self.h]);
+        self.h * terms.iter().zip(&self.c).map(|(m, c)| m * c).sum::<f64>()
+    }
+
+    /// Where a line of unit direction meets the polynomial next to arc length `s`, by the secant method.
+    pub fn meet(&self, origin: DVec3, dir: DVec3, s: f64) -> Option<f64> {
+        let off = |s: f64| {
+            let x = origin + dir * s - self.q;
+            x.dot(self.frame[2]) - self.height([x.dot(self.frame[0]), x.dot(self.frame[1])])
+        };
+        let (mut a, mut b) = (s, s + 1e-3 * self.h);
+        let (mut fa, mut fb) = (off(a), off(b));
+        for _ in 0..60 {
+            if fb == fa {
+                break;
+            }
+            let c = b - (fb * (b - a) / (fb - fa)).clamp(-self.h, self.h);
+            (a, fa, b, fb) = (b, fb, c, off(c));
+            if (b - a).abs() < 1e-15 {
+                break;
+            }
+        }
+        (fb.abs() < 1e-12 * self.h).then_some(b)
+    }
+}
+
+fn monomials(degree: usize, [u, v]: [f64; 2]) -> Vec<f64> {
+    (0..=degree).flat_map(|a| (0..=degree - a).map(move |b| u.powi(a as i32) * v.powi(b as i32))).collect()
 }
