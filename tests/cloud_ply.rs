@@ -38,7 +38,7 @@ fn four() -> Vec<DVec3> {
 }
 
 #[test]
-fn every_bad_file_has_its_sentence() {
+fn p1_p3_p4_p7_p10_p12_p13_p14_p15_every_bad_file_has_its_sentence() {
     let xyz = |count: &str, body: &str| ascii(count, XYZ, body);
     let header = |text: &str| text.as_bytes().to_vec();
     let long_line = "1 ".repeat(40_000);
@@ -111,7 +111,7 @@ fn every_bad_file_has_its_sentence() {
 }
 
 #[test]
-fn the_collinear_cloud_of_a_known_report_is_refused() {
+fn p15_the_collinear_cloud_of_a_known_report_is_refused() {
     let row = |k: i32| {
         let t = f64::from(k);
         format!("{:.5} {:.5} {:.3}\n", -89.546 + 0.1 * t, 4.03964 + 0.2 * t, 450.883 - 0.3 * t)
@@ -122,7 +122,7 @@ fn the_collinear_cloud_of_a_known_report_is_refused() {
 }
 
 #[test]
-fn a_declared_byte_order_that_is_wrong_is_noticed() {
+fn p8_a_declared_byte_order_that_is_wrong_is_noticed() {
     for big in [false, true] {
         let (from, to) = if big { ("big", "little") } else { ("little", "big") };
         let bytes = binary(big, "", &sphere(200));
@@ -134,7 +134,7 @@ fn a_declared_byte_order_that_is_wrong_is_noticed() {
 }
 
 #[test]
-fn the_three_encodings_and_line_ends_agree() {
+fn p9_the_three_encodings_and_line_ends_agree() {
     for end in ["\n", "\r\n", "\r"] {
         let text = String::from_utf8(ascii("4", XYZ, FOUR)).unwrap().replace('\n', end);
         assert_eq!(ply::read(text.as_bytes()).unwrap().points, four(), "ascii {end:?}");
@@ -155,7 +155,7 @@ fn the_three_encodings_and_line_ends_agree() {
 }
 
 #[test]
-fn any_type_any_order_and_other_elements_are_read() {
+fn p7_p11_any_type_any_order_and_other_elements_are_read() {
     let mut bytes = b"ply\nformat binary_big_endian 1.0\ncomment x\nobj_info y\nelement camera 2\n\
         property list uchar short path\nproperty double f\nelement empty 1000000000\nelement vertex 4\n\
         property double z\nproperty list int uchar tags\nproperty short y\nproperty uchar x\n\
@@ -185,7 +185,7 @@ fn any_type_any_order_and_other_elements_are_read() {
 }
 
 #[test]
-fn a_list_that_leaves_the_file_is_an_error() {
+fn p6_a_list_that_leaves_the_file_is_an_error() {
     for count in [[0xff, 0xff, 0xff, 0x7f], [0xff, 0xff, 0xff, 0xff]] {
         let mut bytes = b"ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list int int i\n\
             element vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
@@ -197,7 +197,7 @@ fn a_list_that_leaves_the_file_is_an_error() {
 }
 
 #[test]
-fn normals_and_colours_are_cleaned() {
+fn p16_normals_and_colours_are_cleaned() {
     let properties = format!(
         "{XYZ}property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\nproperty uchar green\n\
          property uchar blue\n"
@@ -216,7 +216,7 @@ fn normals_and_colours_are_cleaned() {
 }
 
 #[test]
-fn points_that_are_not_finite_are_dropped_and_counted() {
+fn p10_points_that_are_not_finite_are_dropped_and_counted() {
     let body = "0 0 0\n1 0 0\nnan 0 0\n0 1 0\n0 1e400 0\n0 0 1\n-nan(ind) 0 0\n";
     let cloud = ply::read(&ascii("7", XYZ, body)).unwrap();
     assert_eq!(cloud.points, four());
@@ -227,7 +227,7 @@ fn points_that_are_not_finite_are_dropped_and_counted() {
 }
 
 #[test]
-fn data_after_the_last_point_are_noted() {
+fn p5_data_after_the_last_point_are_noted() {
     let mut bytes = binary(false, "", &sphere(20));
     let at = bytes.len();
     bytes.extend([0; 12]);
@@ -246,7 +246,7 @@ fn small_files() -> Vec<Vec<u8>> {
 }
 
 #[test]
-fn prefixes_are_refused_and_never_panic() {
+fn p2_prefixes_are_refused_and_never_panic() {
     for bytes in small_files() {
         for end in (0..bytes.len() - 1).step_by(37) {
             assert!(ply::read(&bytes[..end]).is_err(), "{end} of {}", bytes.len());
@@ -256,7 +256,7 @@ fn prefixes_are_refused_and_never_panic() {
 }
 
 #[test]
-fn mutations_never_panic() {
+fn p20_mutations_never_panic() {
     let mut stream = Stream::new(11);
     for bytes in small_files() {
         for _ in 0..20_000 {
@@ -310,4 +310,32 @@ fn scans_are_read_whole() {
         assert_eq!(colors.is_some(), name == "lion.ply" || name == "pump.ply");
         assert!(notes.is_empty(), "{notes:?}");
     }
+}
+
+#[test]
+fn p18_a_sparse_file_of_terabytes_is_refused_before_it_is_read() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("a.ply");
+    let count = 700_000_000_000_u64;
+    let text = format!("ply\nformat binary_little_endian 1.0\nelement vertex {count}\n{XYZ}end_header\n");
+    std::fs::write(&path, &text).unwrap();
+    let file = std::fs::OpenOptions::new().write(true).open(&path).unwrap();
+    if file.set_len(text.len() as u64 + 12 * count).is_err() {
+        println!("skipped: this file system has no files of 8 TB");
+        return;
+    }
+    let error = ply::read_path(&path).unwrap_err();
+    assert!(error.message.contains("more than the limit of 268435456"), "{error}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn p19_strange_names_work_and_endless_ones_are_missing() {
+    use std::os::unix::ffi::OsStrExt;
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join(std::ffi::OsStr::from_bytes(b"scan\xff.ply"));
+    std::fs::write(&path, ascii("4", XYZ, FOUR)).unwrap();
+    assert_eq!(ply::read_path(&path).unwrap().points, four());
+    let endless = dir.path().join("a/".repeat(3000));
+    assert_eq!(ply::read_path(&endless).unwrap_err().kind, CloudFault::Missing);
 }
