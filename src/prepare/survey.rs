@@ -210,6 +210,6 @@ fn thin(samples: &Samples, tree: &Neighbours) -> f64 {
             samples.normals[x.index as usize].dot(n) < -0.5 && d.dot(n) < -0.866 * d.length()
         })
     };
-    let count = samples.len().min(ASKED).max(1);
+    let count = samples.len().clamp(1, ASKED);
     asked(samples).map(is_thin).filter(|t| *t).count() as f64 / count as f64
 }
