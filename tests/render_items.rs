@@ -149,7 +149,7 @@ fn a_matte_without_colour_is_the_default_material() {
     assert_eq!(material::build(&call("matte", &[])).unwrap(), Material::default());
     // #cc as the standard decodes it.
     let linear = ((f64::from(0xcc) / 255.0 + 0.055) / 1.055).powf(2.4) as f32;
-    assert!((Material::default().albedo()[0] - linear).abs() < 1e-7);
+    assert!((Material::default().albedo(None)[0] - linear).abs() < 1e-7);
     assert_eq!(
         material::build(&call("matte", &[("color", Value::Color([-1.0; 3]))])).unwrap_err().param,
         "color"

@@ -4,7 +4,7 @@
 //! F would have to change three times faster than a distance does), minimises every local minimum of |F|, and bisects
 //! every change of sign to the last bit.
 
-pub mod common;
+mod common;
 
 use common::{Truth, all, chord, surface};
 use glam::DVec3;
@@ -128,7 +128,7 @@ fn scan(set: &PointSet, line: &Ray, from: f64, to: f64, finest: f64, scratch: &m
 
 /// What chords of one cloud showed.
 #[derive(Debug, Default, Clone, Copy)]
-pub struct Tally {
+struct Tally {
     chords: u64,
     crossings: u64,
     missed: u64,
@@ -144,7 +144,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    pub fn add(mut self, o: Tally) -> Tally {
+    fn plus(mut self, o: Tally) -> Tally {
         self.chords += o.chords;
         self.crossings += o.crossings;
         self.missed += o.missed;
@@ -171,13 +171,7 @@ fn alternates(set: &PointSet, line: &Ray, length: f64, found: &[Crossing], field
 }
 
 /// One line, crossings against the scan.
-pub fn compare(
-    set: &PointSet,
-    ray: &Ray,
-    finest: f64,
-    field: &mut FieldScratch,
-    scratch: &mut Scratch,
-) -> Tally {
+fn compare(set: &PointSet, ray: &Ray, finest: f64, field: &mut FieldScratch, scratch: &mut Scratch) -> Tally {
     scratch.counts = Default::default();
     let found: Vec<Crossing> = all(set, ray, scratch);
     let length = ray.dir.length();
@@ -292,11 +286,11 @@ fn the_crossings_are_those_of_a_dense_scan() {
                         ray.map_or(Tally::default(), |r| compare(&set, &r, finest, field, scratch))
                     },
                 )
-                .reduce(Tally::default, Tally::add)
+                .reduce(Tally::default, Tally::plus)
         };
         for (kind, tally) in [("random", run(random, false)), ("near-tangent", run(grazing, true))] {
             println!("{name}, {kind}: {tally:?}");
-            whole = whole.add(tally);
+            whole = whole.plus(tally);
         }
     }
     println!("all: {whole:?}");
