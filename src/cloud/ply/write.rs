@@ -77,8 +77,10 @@ mod tests {
     #[test]
     fn what_is_written_is_read_back() {
         let third = DVec3::new(1.0 / 3.0, -2e7, 1e-9);
-        for points in [vec![DVec3::new(0.5, 2.0, -0.25), DVec3::Y, DVec3::Z], vec![third, DVec3::X, DVec3::Y]]
-        {
+        for points in [
+            vec![DVec3::new(0.5, 2.0, -0.25), DVec3::Y, DVec3::Z],
+            vec![third, 3e7 * DVec3::X, 1e7 * DVec3::Z],
+        ] {
             for encoding in [Encoding::Binary, Encoding::Text] {
                 let normals = Some(vec![DVec3::X, -DVec3::Y, DVec3::Z]);
                 let cloud = Cloud { points: points.clone(), normals, ..Cloud::default() };
@@ -90,7 +92,8 @@ mod tests {
 
     #[test]
     fn every_byte_of_a_colour_survives() {
-        let points: Vec<DVec3> = (0..256).map(|i| DVec3::new(f64::from(i), 0.0, 0.0)).collect();
+        let points: Vec<DVec3> =
+            (0..256).map(|i| DVec3::new(f64::from(i % 16), f64::from(i / 16), 0.0)).collect();
         let colors = (0..256).map(|i| [i as f32 / 255.0, 0.0, 1.0]).collect();
         let once = round_trip(&Cloud { points, colors: Some(colors), ..Cloud::default() }, Encoding::Binary);
         let twice = round_trip(&once, Encoding::Text);
