@@ -6,7 +6,8 @@ use std::fmt::Write as _;
 
 use cloud_common::{fibonacci_sphere, scan};
 use glam::DVec3;
-use pss::cloud::{Cloud, CloudFault, ply};
+use pss::cloud::ply::Cut;
+use pss::cloud::{Cloud, CloudError, CloudFault, ply};
 use pss::num::hash::Stream;
 
 const XYZ: &str = "property float x\nproperty float y\nproperty float z\n";
@@ -119,6 +120,52 @@ fn p15_the_collinear_cloud_of_a_known_report_is_refused() {
     let body: String = (0..30).map(row).collect();
     let error = ply::read(&ascii("30", XYZ, &body)).unwrap_err();
     assert_eq!(error.to_string(), "no surface: all points are on a line");
+}
+
+/// Read of a stream that ends after `bytes`, of a file that had `length` when it was opened.
+fn read_as(bytes: &[u8], length: usize, cut: Cut) -> Result<Cloud, CloudError> {
+    ply::read_from(bytes, length as u64, cut)
+}
+
+#[test]
+fn p2_the_whole_points_of_a_file_that_is_cut_short_are_kept_on_request() {
+    for bytes in small_files() {
+        let whole = ply::read(&bytes).unwrap();
+        let body = bytes.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
+        // Rows of 12 bytes, or lines.
+        let rows = |end: usize| match bytes[..body].windows(5).any(|w| w == b"ascii") {
+            true => bytes[body..end].iter().filter(|b| **b == b'\n').count(),
+            false => (end - body) / 12,
+        };
+        // The last line of a text may lack its end; whether half a number is missing cannot be told there.
+        let last = bytes.len() - 1 - bytes.iter().rev().skip(1).position(|b| *b == b'\n').unwrap_or(0);
+        for end in (body..last).step_by(37) {
+            let kept = read_as(&bytes[..end], end, Cut::Kept);
+            let count = rows(end);
+            let points = kept.as_ref().map(|c| &c.points[..]).unwrap_or_default();
+            assert!(points.is_empty() || points == &whole.points[..count], "{end}");
+            assert!(count < 10 || points.len() == count, "{end}");
+            let note = format!("truncated: expected 60 points, got {count}: these were kept");
+            assert!(kept.is_err() || kept.unwrap().notes == [note]);
+            assert_eq!(read_as(&bytes[..end], end, Cut::Refused).unwrap_err().kind, CloudFault::Bad);
+        }
+        assert_eq!(read_as(&bytes, bytes.len(), Cut::Kept).unwrap(), whole);
+    }
+}
+
+#[test]
+fn p17_a_file_that_shrinks_while_it_is_read_is_a_fault_of_the_reading() {
+    for bytes in small_files() {
+        let header = bytes.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
+        for end in (header..bytes.len() - 1).step_by(37) {
+            for cut in [Cut::Refused, Cut::Kept] {
+                let error = read_as(&bytes[..end], bytes.len(), cut).unwrap_err();
+                assert_eq!(error.kind, CloudFault::Io, "{end}: {error}");
+                let said = format!("{} {}", error.message, error.help.unwrap_or_default());
+                assert!(said.contains("the file changed while it was read"), "{said}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -35,6 +35,7 @@ impl Samples {
             spacing: pick(&self.spacing, keep),
             colors: self.colors.as_ref().map(|c| pick(c, keep)),
             opposed: self.opposed,
+            given_opposed: self.given_opposed,
             notes: self.notes.clone(),
         }
     }

@@ -4,8 +4,10 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::fitness::{self, Concern, Fitness};
 use super::{ScanReport, complaint, files};
 use crate::cloud::holes::{Hole, holes};
+use crate::cloud::neighbours::Neighbours;
 use crate::cloud::scraps::bounding;
 use crate::cloud::winding::Winding;
 use crate::cloud::{Cloud, CloudError, CloudFault, NormalSource, SampleOptions, Samples, ply};
@@ -99,10 +101,14 @@ impl<'a> Builder<'a> {
             return Err(error.help("write `points(\"scan.ply\")` or `points(sphere(r: 1), samples: 2000)`"));
         };
         let at = call.place("source");
-        let super::Options { scene_dir, allow_read, .. } = self.options;
+        let super::Options { scene_dir, allow_read, cut, .. } = self.options;
         let path = files::resolve(text, base, *from_command_line, scene_dir, allow_read, at)?;
         self.inputs.push(path.clone());
-        ply::read_path(&path).map_err(|e| cloud_complaint(call, &format!("`{text}`"), e))
+        let cloud =
+            ply::read_path_as(&path, *cut).map_err(|e| cloud_complaint(call, &format!("`{text}`"), e))?;
+        let warning = |note| Diagnostic::warning("W0102", format!("`{text}`: {note}")).at(at, "");
+        self.warnings.extend(cloud.notes.iter().map(warning));
+        Ok(cloud)
     }
 
     /// Whether any material reads the colours of scans; else none is kept.
@@ -131,7 +137,11 @@ impl<'a> Builder<'a> {
             },
             keep_strays: false,
         };
+        let single = fitness::is_single(&cloud);
         let samples = Samples::new(cloud, &options).map_err(|e| cloud_complaint(call, "the cloud", e))?;
+        let concerns = Fitness::new(&samples, &Neighbours::new(&samples.points), single).concerns();
+        let warning = |c: Concern| Diagnostic::warning(c.code, c.message).at(call.at, "").help(c.help);
+        self.warnings.extend(concerns.into_iter().map(warning));
         Ok(self.add(name, samples, options, points::options(call)))
     }
 

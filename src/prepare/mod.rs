@@ -1,12 +1,14 @@
 //! A scene made ready to trace: what is drawn is built, placed and bounded; what nothing draws is never touched.
 //!
-//! [`build`] makes solids of calls, [`edits`] and [`offset`] what methods make of them, [`samples`] takes samples of solids, [`files`] says what may be read, [`lower`]
+//! [`build`] makes solids of calls, [`edits`] and [`offset`] what methods make of them, [`fitness`] doubts
+//! them, [`samples`] takes samples of solids, [`files`] says what may be read, [`lower`]
 //! turns shapes into leaves and one set expression. Text and pixels are left to others.
 
 mod build;
 mod edits;
 mod extent;
 mod files;
+mod fitness;
 mod lower;
 mod offset;
 mod samples;
@@ -14,6 +16,7 @@ pub mod survey;
 
 use std::path::PathBuf;
 
+use crate::cloud::ply::Cut;
 use crate::csg::{Expr, Object};
 use crate::diag::{Diagnostic, Fault};
 use crate::geom::Aabb;
@@ -42,6 +45,8 @@ pub struct Options {
     pub scene_dir: PathBuf,
     /// Other folders below which files may be read.
     pub allow_read: Vec<PathBuf>,
+    /// What becomes of scans that are cut short.
+    pub cut: Cut,
     /// Measure the solidity of every scan drawn, even where a picture does not depend on it.
     pub measure_all: bool,
 }

@@ -5,6 +5,9 @@
 use glam::DVec3;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
+/// A plane farther than so many of the least widths from its point is fitted again with all points.
+const SLACK: f64 = 1.0;
+
 /// A cloud and how it is read.
 pub struct Reference {
     pub points: Vec<DVec3>,
@@ -26,7 +29,8 @@ impl Reference {
             return [0.0; 2];
         }
         let s = 1.0 - rho / 8.0;
-        [s.powi(8), -s.powi(7)]
+        let s4 = s * s * s * s;
+        [s4 * s4, -s4 * s * s * s]
     }
 
     /// The factor of a sample whose outward normal makes the cosine c with the plane's, and its derivative: one from
@@ -144,9 +148,25 @@ impl Reference {
         Some((n, t))
     }
 
+    /// The same with only the points whose compact weight a plane within SLACK least widths of r can make positive: leaves out
+    /// nothing but zeros.
+    fn around(&self, r: DVec3) -> Reference {
+        let reach = if self.gaussian { f64::INFINITY } else { 8f64.sqrt() + SLACK };
+        let is_near = |i: &usize| (self.points[*i] - r).length_squared() < (reach * self.widths[*i]).powi(2);
+        let near: Vec<usize> = (0..self.points.len()).filter(is_near).collect();
+        Reference {
+            points: near.iter().map(|i| self.points[*i]).collect(),
+            normals: near.iter().map(|i| self.normals[*i]).collect(),
+            widths: near.iter().map(|i| self.widths[*i]).collect(),
+            ..*self
+        }
+    }
+
     /// F, where the start lies inside a trust sphere; positive outside.
     pub fn value(&self, r: DVec3) -> Option<f64> {
-        let fit = self.fit(r)?;
+        let fit = self.around(r).fit(r)?;
+        let least = self.widths.iter().copied().fold(f64::INFINITY, f64::min);
+        let fit = if (fit.q - r).length() < SLACK * least { fit } else { self.fit(r)? };
         Some(fit.sign * ((fit.q - r).dot(fit.frame[2]) + fit.height([0.0; 2])))
     }
 

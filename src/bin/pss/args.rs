@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args as Group, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
+use pss::cloud::ply::Cut;
 use pss::geom::Ray;
 use pss::output::Format;
 
@@ -82,12 +83,24 @@ pub struct CloudArgs {
     /// How messages look on standard error
     #[arg(long, value_enum, default_value_t = MessageFormat::Text)]
     pub format: MessageFormat,
+    /// Keep the whole points of a file that is cut short, and say so
+    #[arg(long)]
+    pub lenient: bool,
+}
+
+/// What becomes of files that are cut short.
+pub fn cut(lenient: bool) -> Cut {
+    if lenient { Cut::Kept } else { Cut::Refused }
 }
 
 impl Command {
     /// How messages look, and how many threads work.
     pub fn common(&self) -> CloudArgs {
-        let of = |scene: &SceneArgs| CloudArgs { threads: scene.threads, format: scene.format };
+        let of = |scene: &SceneArgs| CloudArgs {
+            threads: scene.threads,
+            format: scene.format,
+            lenient: scene.lenient,
+        };
         match self {
             Command::Render(args) => of(&args.scene),
             Command::Probe(args) => of(&args.scene),
@@ -114,6 +127,9 @@ pub struct SceneArgs {
     /// Let the scene read files below this folder too
     #[arg(long, value_name = "DIR")]
     pub allow_read: Vec<PathBuf>,
+    /// Keep the whole points of scans that are cut short, and say so
+    #[arg(long)]
+    pub lenient: bool,
     /// Which of the scene's cameras; the first if none is named
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,

@@ -7,28 +7,30 @@ use pss::cloud::{Cloud, CloudError, CloudFault, SampleOptions, Samples, ply};
 use pss::diag::{Diagnostic, Fault};
 use pss::output::write_whole;
 use pss::prepare::survey::{Spread, Survey, survey};
+use pss::source::SourceMap;
 
-use crate::args::{CloudCommand, ConvertArgs, InfoArgs};
-use crate::console::{self, Failure};
+use crate::args::{CloudCommand, ConvertArgs, InfoArgs, cut};
+use crate::console::{self, Console, Failure};
 
 /// Does what is asked.
-pub fn run(command: &CloudCommand) -> Result<(), Failure> {
+pub fn run(command: &CloudCommand, console: &Console) -> Result<(), Failure> {
     match command {
         CloudCommand::Info(args) => info(args),
-        CloudCommand::Convert(args) => convert(args),
+        CloudCommand::Convert(args) => convert(args, console),
     }
 }
 
 fn info(args: &InfoArgs) -> Result<(), Failure> {
     for path in &args.files {
-        let found = read(path).and_then(|cloud| survey(cloud).map_err(|e| complaint(path, &e)))?;
+        let found = read(path, args.common.lenient)
+            .and_then(|cloud| survey(cloud).map_err(|e| complaint(path, &e)))?;
         let text = if args.json { json(path, &found) } else { table(path, &found) };
         console::print(text.as_bytes())?;
     }
     Ok(())
 }
 
-fn convert(args: &ConvertArgs) -> Result<(), Failure> {
+fn convert(args: &ConvertArgs, console: &Console) -> Result<(), Failure> {
     let ConvertArgs { file, out, .. } = args;
     let refuse = |code, message: String, fault| Failure::from(Diagnostic::error(code, message).fault(fault));
     if !out.extension().is_some_and(|e| e.eq_ignore_ascii_case("ply")) {
@@ -38,10 +40,13 @@ fn convert(args: &ConvertArgs) -> Result<(), Failure> {
     if same(file, out) {
         return Err(refuse("E0607", format!("`{}` is the input", out.display()), Fault::Output));
     }
-    let mut cloud = read(file)?;
+    let mut cloud = read(file, args.common.lenient)?;
     if args.normals || args.clean {
         cloud = worked(cloud, args).map_err(|e| complaint(file, &e))?;
     }
+    let warning = |note| Diagnostic::warning("W0102", format!("`{}`: {note}", file.display()));
+    let warnings: Vec<Diagnostic> = cloud.notes.iter().map(warning).collect();
+    console.show(&warnings, &SourceMap::default());
     let encoding = if args.ascii { ply::Encoding::Text } else { ply::Encoding::Binary };
     Ok(write_whole(out, |sink| ply::write(&cloud, encoding, sink))?)
 }
@@ -54,8 +59,8 @@ fn worked(cloud: Cloud, args: &ConvertArgs) -> Result<Cloud, CloudError> {
     Ok(Cloud { points, normals: keeps_normals.then_some(normals), colors, notes })
 }
 
-fn read(path: &Path) -> Result<Cloud, Failure> {
-    ply::read_path(path).map_err(|e| complaint(path, &e))
+fn read(path: &Path, lenient: bool) -> Result<Cloud, Failure> {
+    ply::read_path_as(path, cut(lenient)).map_err(|e| complaint(path, &e))
 }
 
 fn complaint(path: &Path, e: &CloudError) -> Failure {
@@ -89,7 +94,7 @@ fn table(path: &Path, s: &Survey) -> String {
         ("extent", format!("{:.6} x {:.6} x {:.6}, diagonal {:.6}", size.x, size.y, size.z, s.diagonal)),
         ("from, to", format!("{:.6} .. {:.6}", s.min, s.max)),
         ("spacing", format!("{}, nearest +-{}", range(&s.spacing), percent(s.unevenness))),
-        ("roughness", format!("{:.3} of the distance of the sixth neighbour", s.roughness)),
+        ("noise", format!("{:.4e}, {:.3} of a width", s.noise, s.noise / s.width.median)),
         ("width", range(&s.width)),
         (
             "smallest wall",

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use pss::diag::{Diagnostic, Fault};
-use pss::prepare::{self, Options};
+use pss::prepare::{self, Options, ScanReport};
 use pss::shot::Shot;
 use pss::source::SourceMap;
 
-use crate::args::SceneArgs;
+use crate::args::{SceneArgs, cut};
 use crate::console::{Console, Failure};
 
 /// The longest scene, bytes: parsing takes some seventy times as much memory.
@@ -23,6 +23,8 @@ pub struct Loaded {
     pub shot: Shot,
     /// All files read, the scene among them.
     pub inputs: Vec<PathBuf>,
+    /// What was found about each scan.
+    pub scans: Vec<ScanReport>,
     /// Reading and understanding the text.
     pub parsing: Duration,
     /// Building what it says.
@@ -55,6 +57,7 @@ pub fn load(args: &SceneArgs, options: Options, quiet: bool, console: &Console) 
         camera: args.camera.clone(),
         scene_dir: if stdin { PathBuf::from(".") } else { folder(&args.scene) },
         allow_read: args.allow_read.clone(),
+        cut: cut(args.lenient),
         ..options
     };
     let prepared = match prepare::prepare(&scene, &options) {
@@ -66,7 +69,7 @@ pub fn load(args: &SceneArgs, options: Options, quiet: bool, console: &Console) 
     }
     let texts = sources.files().filter_map(|f| f.path.clone());
     let inputs = texts.chain(prepared.inputs).collect();
-    Ok(Loaded { shot: prepared.shot, inputs, parsing, preparing: start.elapsed() })
+    Ok(Loaded { shot: prepared.shot, inputs, scans: prepared.scans, parsing, preparing: start.elapsed() })
 }
 
 /// Whether the scene comes from standard input.

@@ -24,7 +24,7 @@ fn main() -> ExitCode {
         Ok(args) => args,
         Err(e) => return ExitCode::from(misused(&e)),
     };
-    let args::CloudArgs { threads, format } = args.command.common();
+    let args::CloudArgs { threads, format, .. } = args.command.common();
     let console = Console::new(format);
     console::keep_panics_quiet();
     let done = std::panic::catch_unwind(|| {
@@ -33,7 +33,7 @@ fn main() -> ExitCode {
         pool.install(|| match &args.command {
             Command::Render(args) => render::run(args, &console),
             Command::Probe(args) => probe::run(args, &console),
-            Command::Cloud(command) => cloud::run(command),
+            Command::Cloud(command) => cloud::run(command, &console),
         })
     });
     let done = done.unwrap_or_else(|_| Err(Failure::internal("the program went wrong".to_owned())));

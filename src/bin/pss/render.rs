@@ -37,9 +37,9 @@ pub fn run(args: &RenderArgs, console: &Console) -> Result<(), Failure> {
     for path in &outputs {
         write(&rendered.film, &loaded.shot.settings, path)?;
     }
-    let Loaded { parsing, preparing, .. } = loaded;
+    let Loaded { parsing, preparing, scans, .. } = loaded;
     let stages = Stages { parsing, preparing, rendering, writing: writing.elapsed() };
-    let stats = Stats::new(start.elapsed(), &stages, &rendered);
+    let stats = Stats::new(start.elapsed(), &stages, &rendered, &scans);
     if let Some(path) = &args.stats_json {
         output::write_whole(path, |sink| io::Write::write_all(sink, stats.json().as_bytes()))?;
     }

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::time::Duration;
 
+use pss::prepare::ScanReport;
 use pss::render::Rendered;
 use serde::Serialize;
 
@@ -34,6 +35,15 @@ pub struct Stats {
     rays: RayCounts,
     pss: PssCounts,
     csg: CsgCounts,
+    scans: Vec<ScanNotes>,
+}
+
+#[derive(Serialize, Debug)]
+struct ScanNotes {
+    name: String,
+    samples: usize,
+    /// What was dropped or mended, one sentence each.
+    notes: Vec<String>,
 }
 
 #[derive(Serialize, Debug)]
@@ -71,9 +81,15 @@ struct CsgCounts {
     ties: u64,
 }
 
+impl ScanNotes {
+    fn new(scan: &ScanReport) -> ScanNotes {
+        ScanNotes { name: scan.name.clone(), samples: scan.samples, notes: scan.notes.clone() }
+    }
+}
+
 impl Stats {
     /// Gathers what is known; `wall` is the time since the start.
-    pub fn new(wall: Duration, stages: &Stages, rendered: &Rendered) -> Stats {
+    pub fn new(wall: Duration, stages: &Stages, rendered: &Rendered, scans: &[ScanReport]) -> Stats {
         let (rays, counts) = (rendered.rays, rendered.counts);
         Stats {
             wall_s: wall.as_secs_f64(),
@@ -102,6 +118,7 @@ impl Stats {
                 leaves_skipped: counts.leaves_skipped,
                 ties: counts.ties,
             },
+            scans: scans.iter().map(ScanNotes::new).collect(),
         }
     }
 
@@ -112,13 +129,20 @@ impl Stats {
         json + "\n"
     }
 
-    /// A table for people: a line for each number.
+    /// A table for people: a line for each number, and what was found about each scan.
     pub fn table(&self) -> String {
         let mut table = String::new();
         if let Ok(serde_json::Value::Object(all)) = serde_json::to_value(self) {
             for (name, value) in &all {
                 rows(&mut table, name, value);
             }
+        }
+        for scan in &self.scans {
+            // Writing to a string cannot fail.
+            let _ = writeln!(table, "{:<26} {:>15} samples", scan.name, scan.samples);
+            scan.notes.iter().for_each(|note| {
+                let _ = writeln!(table, "  {note}");
+            });
         }
         table
     }
@@ -134,7 +158,7 @@ fn rows(table: &mut String, name: &str, value: &serde_json::Value) {
             // Writing to a string cannot fail.
             let _ = writeln!(table, "{name:<26} {seconds:>15.3}");
         }
-        serde_json::Value::Null => {}
+        serde_json::Value::Null | serde_json::Value::Array(_) => {}
         value => {
             let _ = writeln!(table, "{name:<26} {:>15}", value.to_string());
         }

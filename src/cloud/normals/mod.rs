@@ -42,6 +42,8 @@ pub struct Oriented {
     pub normals: Vec<DVec3>,
     /// Share of the pairs of near neighbours whose normals are opposed.
     pub opposed: f64,
+    /// The same of the normals that were given, before any was turned.
+    pub given_opposed: f64,
     /// What was mended, one sentence each.
     pub notes: Vec<String>,
 }
@@ -71,7 +73,7 @@ pub fn from_points(scene: Scene<'_>) -> Oriented {
     let normals = coarse.spread(scene.points, &normals);
     notes.push(format!("noisy: normals are those of {} means of near samples", coarse.points.len()));
     let opposed = agreement(&normals, scene.table);
-    Oriented { normals, opposed, notes }
+    Oriented { normals, opposed, given_opposed: opposed, notes }
 }
 
 fn estimated(scene: Scene<'_>, spread: Spread) -> Oriented {
@@ -84,7 +86,7 @@ fn estimated(scene: Scene<'_>, spread: Spread) -> Oriented {
         notes.push(format!("{flips} estimated normals were turned by the winding number"));
     }
     let opposed = agreement(&normals, scene.table);
-    Oriented { normals, opposed, notes }
+    Oriented { normals, opposed, given_opposed: opposed, notes }
 }
 
 /// The median of the roughness of samples spread over the cloud.
@@ -113,19 +115,21 @@ pub fn from_file(scene: Scene<'_>, given: Vec<DVec3>) -> Oriented {
         notes.push(format!("{missing} missing normals were estimated"));
     }
     let mut opposed = agreement(&normals, scene.table);
+    let given_opposed = opposed;
     let areas = scene.areas(&normals);
     if DOUBTFUL < opposed {
-        let share = 100.0 * opposed;
-        notes.push(format!("{share:.1} % of neighbouring samples have opposed normals"));
         let flips = improve(scene, &areas, &mut normals, ROUNDS);
-        notes.push(format!("{flips} normals were turned by the winding number"));
+        let share = 100.0 * opposed;
+        notes.push(format!(
+            "{share:.1} % of near samples had opposed normals: {flips} were turned by the winding number"
+        ));
         opposed = agreement(&normals, scene.table);
     }
     if scene.is_inside_out(&areas, &normals) {
         normals.iter_mut().for_each(|n| *n = -*n);
         notes.push("all normals point inward and were turned".to_string());
     }
-    Oriented { normals, opposed, notes }
+    Oriented { normals, opposed, given_opposed, notes }
 }
 
 impl Scene<'_> {

@@ -15,6 +15,8 @@ pub struct Input<R> {
     read: u64,
     /// Lines begun so far; the number of the last line read.
     pub line: usize,
+    /// Whether the last row had its line's end.
+    pub line_ended: bool,
     text: Vec<u8>,
 }
 
@@ -29,7 +31,7 @@ pub enum Short {
 impl<R: BufRead> Input<R> {
     /// A stream of `length` bytes.
     pub fn new(stream: R, length: u64) -> Input<R> {
-        Input { stream, length, read: 0, line: 0, text: Vec::new() }
+        Input { stream, length, read: 0, line: 0, line_ended: true, text: Vec::new() }
     }
 
     /// Bytes from here to the end of the file.
@@ -93,6 +95,7 @@ impl<R: BufRead> Input<R> {
 
     fn line_into(&mut self) -> Result<(), CloudError> {
         self.text.clear();
+        self.line_ended = false;
         loop {
             let ready = self.peek()?;
             if ready.is_empty() {
@@ -112,6 +115,7 @@ impl<R: BufRead> Input<R> {
                 self.eat(b'\n')?;
             }
             if stop.is_some() {
+                self.line_ended = true;
                 return Ok(());
             }
         }
@@ -125,7 +129,7 @@ impl<R: BufRead> Input<R> {
         while 0 < count {
             let ready = self.peek().map_err(Short::Error)?.len() as u64;
             if ready == 0 {
-                return Err(Short::Error(CloudError::io("the file changed while it was read")));
+                return Err(Short::Error(CloudError::io(CHANGED)));
             }
             let step = ready.min(count);
             self.stream.consume(step as usize);
@@ -142,7 +146,7 @@ impl<R: BufRead> Input<R> {
         if self.left() < bytes.len() as u64 {
             return Err(Short::End);
         }
-        self.stream.read_exact(bytes).map_err(|e| Short::Error(e.into()))?;
+        self.stream.read_exact(bytes).map_err(|e| Short::Error(changed_or(e)))?;
         self.read += bytes.len() as u64;
         if encoding == Encoding::Big {
             bytes.reverse();
@@ -155,12 +159,16 @@ impl<R: BufRead> Input<R> {
     pub fn truncated(&self, message: String, at_end: bool) -> CloudError {
         let shrank = at_end && 0 < self.left();
         let error = if shrank { CloudError::io(message) } else { CloudError::bad(message) };
-        error.help(if shrank {
-            "the file changed while it was read"
-        } else {
-            "the file is cut short: copy or export it again"
-        })
+        error.help(if shrank { CHANGED } else { "the file is cut short: copy or export it again" })
     }
+}
+
+/// A file that ends before its length.
+const CHANGED: &str = "the file changed while it was read";
+
+/// Fewer bytes than the file had when it was opened, or what the system says.
+fn changed_or(e: std::io::Error) -> CloudError {
+    if e.kind() == ErrorKind::UnexpectedEof { CloudError::io(CHANGED) } else { e.into() }
 }
 
 /// Given where text is expected and there is none.

@@ -16,27 +16,42 @@ pub use write::{Encoding, write};
 
 use super::{Cloud, CloudError, check_extent};
 
-/// Reads a PLY file. Only regular files: a pipe or a device could hold up the program for ever.
+/// What becomes of a file that ends before its last point.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Cut {
+    /// It is refused.
+    #[default]
+    Refused,
+    /// Its whole rows are kept, and that is noted.
+    Kept,
+}
+
+/// Reads a whole PLY file; see [`read_path_as`].
 pub fn read_path(path: &Path) -> Result<Cloud, CloudError> {
+    read_path_as(path, Cut::Refused)
+}
+
+/// Reads a PLY file. Only regular files: a pipe or a device could hold up the program for ever.
+pub fn read_path_as(path: &Path, cut: Cut) -> Result<Cloud, CloudError> {
     let metadata = std::fs::metadata(path).map_err(|e| CloudError::missing(format!("cannot open: {e}")))?;
     regular(&metadata)?;
     let file = File::open(path).map_err(|e| CloudError::missing(format!("cannot open: {e}")))?;
     // Asked again of what was opened: the name may have changed hands.
     let metadata = file.metadata()?;
     regular(&metadata)?;
-    read_from(BufReader::with_capacity(1 << 16, file), metadata.len())
+    read_from(BufReader::with_capacity(1 << 16, file), metadata.len(), cut)
 }
 
-/// Reads a PLY file that is in memory.
+/// Reads a whole PLY file that is in memory.
 pub fn read(bytes: &[u8]) -> Result<Cloud, CloudError> {
-    read_from(bytes, bytes.len() as u64)
+    read_from(bytes, bytes.len() as u64, Cut::Refused)
 }
 
 /// Reads a PLY file of `length` bytes from a stream.
-pub fn read_from(stream: impl BufRead, length: u64) -> Result<Cloud, CloudError> {
+pub fn read_from(stream: impl BufRead, length: u64, cut: Cut) -> Result<Cloud, CloudError> {
     let mut input = input::Input::new(stream, length);
     let header = header::read(&mut input)?;
-    let cloud = vertices::read(&mut input, &header)?;
+    let cloud = vertices::read(&mut input, &header, cut)?;
     check_extent(&cloud.points)?;
     Ok(cloud)
 }

@@ -2,16 +2,17 @@
 
 use std::io::BufRead;
 
+use super::Cut;
 use super::columns::{Columns, Role};
 use super::header::{Element, Encoding, Header, Property, shown};
 use super::input::{Input, Short};
-use crate::cloud::{Cloud, CloudError};
+use crate::cloud::{Cloud, CloudError, CloudFault};
 
 /// More points are refused: their positions alone would need 6 GiB, and indices are 32 bits wide.
 const POINT_LIMIT: u64 = 1 << 28;
 
 /// Reads the points of a file whose header has been read.
-pub fn read<R: BufRead>(input: &mut Input<R>, header: &Header) -> Result<Cloud, CloudError> {
+pub fn read<R: BufRead>(input: &mut Input<R>, header: &Header, cut: Cut) -> Result<Cloud, CloudError> {
     let at = header.elements.iter().position(|e| e.name == "vertex").ok_or_else(|| {
         CloudError::bad("no points: the file has no element `vertex`")
             .help("points are read from `element vertex`")
@@ -25,25 +26,28 @@ pub fn read<R: BufRead>(input: &mut Input<R>, header: &Header) -> Result<Cloud, 
         let message = format!("{} points are more than the limit of {POINT_LIMIT}", vertex.count);
         return Err(CloudError::bad(message).at_line(vertex.line).help("thin the cloud"));
     }
-    let most = fits(input, header, at)?;
+    let most = fits(input, header, at, cut)?;
     for element in &header.elements[..at] {
         skip(input, header.encoding, element)?;
     }
     columns.reserve(vertex.count.min(most) as usize);
-    match header.encoding {
+    let stop = match header.encoding {
         Encoding::Ascii => ascii_rows(input, vertex, &mut columns)?,
         encoding => binary_rows(input, vertex, encoding, &mut columns)?,
-    }
+    };
+    let note = stop.map(|stop| stop.allowed(cut)).transpose()?;
     let mut cloud = columns.finish(header.encoding)?;
-    if at + 1 == header.elements.len() {
-        note_rest(input, header.encoding, &mut cloud)?;
+    match note {
+        Some(note) => cloud.notes.push(note),
+        None if at + 1 == header.elements.len() => note_rest(input, header.encoding, &mut cloud)?,
+        None => {}
     }
     Ok(cloud)
 }
 
 /// Compares the counts with the length of the file, before anything is walked through; how many points the file
 /// can hold at most.
-fn fits<R: BufRead>(input: &Input<R>, header: &Header, vertex: usize) -> Result<u64, CloudError> {
+fn fits<R: BufRead>(input: &Input<R>, header: &Header, vertex: usize, cut: Cut) -> Result<u64, CloudError> {
     // The last row of an ASCII file needs no end of line.
     let mut left = u128::from(input.left()) + u128::from(header.encoding == Encoding::Ascii);
     for element in &header.elements[..vertex] {
@@ -62,7 +66,7 @@ fn fits<R: BufRead>(input: &Input<R>, header: &Header, vertex: usize) -> Result<
     let most = left as u64 / element.least_row(header.encoding);
     let rows_are_equal =
         header.encoding != Encoding::Ascii && element.properties.iter().all(|p| p.list.is_none());
-    if most < element.count && rows_are_equal && vertex == 0 {
+    if most < element.count && rows_are_equal && vertex == 0 && (cut == Cut::Refused || most == 0) {
         return Err(input.truncated(expected(element, most), false));
     }
     Ok(most)
@@ -121,27 +125,52 @@ fn skip_property<R: BufRead>(
     input.skip(count as u64 * size)
 }
 
+/// Why rows end before their count, with the whole rows that there are.
+struct Stop {
+    error: CloudError,
+    rows: u64,
+}
+
+impl Stop {
+    /// A note instead of the error, where that is asked for and some rows are there. A file that changes while it is
+    /// read is never whole.
+    fn allowed(self, cut: Cut) -> Result<String, CloudError> {
+        if cut == Cut::Refused || self.rows == 0 || self.error.kind == CloudFault::Io {
+            return Err(self.error);
+        }
+        Ok(format!("{}: these were kept", self.error.message))
+    }
+}
+
 fn binary_rows<R: BufRead>(
     input: &mut Input<R>,
     vertex: &Element,
     encoding: Encoding,
     columns: &mut Columns,
-) -> Result<(), CloudError> {
+) -> Result<Option<Stop>, CloudError> {
     for row in 0..vertex.count {
-        let stop = |input: &Input<R>, short: Short| match short {
-            Short::End => input.truncated(expected(vertex, row), false),
-            Short::Error(error) => error,
-        };
-        for (at, property) in vertex.properties.iter().enumerate() {
-            match columns.role(at) {
-                Role::Ignored => skip_property(input, encoding, property).map_err(|e| stop(input, e))?,
-                Role::Slot(slot) => {
-                    let value = input.scalar(property.scalar, encoding).map_err(|e| stop(input, e))?;
-                    columns.set(slot, value);
-                }
+        match binary_row(input, vertex, encoding, columns) {
+            Ok(()) => columns.push(row),
+            Err(Short::End) => {
+                return Ok(Some(Stop { error: input.truncated(expected(vertex, row), false), rows: row }));
             }
+            Err(Short::Error(error)) => return Err(error),
         }
-        columns.push(row);
+    }
+    Ok(None)
+}
+
+fn binary_row<R: BufRead>(
+    input: &mut Input<R>,
+    vertex: &Element,
+    encoding: Encoding,
+    columns: &mut Columns,
+) -> Result<(), Short> {
+    for (at, property) in vertex.properties.iter().enumerate() {
+        match columns.role(at) {
+            Role::Ignored => skip_property(input, encoding, property)?,
+            Role::Slot(slot) => columns.set(slot, input.scalar(property.scalar, encoding)?),
+        }
     }
     Ok(())
 }
@@ -150,16 +179,18 @@ fn ascii_rows<R: BufRead>(
     input: &mut Input<R>,
     vertex: &Element,
     columns: &mut Columns,
-) -> Result<(), CloudError> {
+) -> Result<Option<Stop>, CloudError> {
     for row in 0..vertex.count {
-        let Some(text) = input.row()? else {
-            return Err(input.truncated(expected(vertex, row), true));
+        let parsed = input.row()?.map(|text| ascii_row(text, vertex, columns));
+        // Without its line's end the last number may be half of one: such a row is whole only at the end of all.
+        let cut = !input.line_ended && (row + 1 < vertex.count || 0 < input.left());
+        let Some(parsed) = parsed.filter(|_| !cut) else {
+            return Ok(Some(Stop { error: input.truncated(expected(vertex, row), true), rows: row }));
         };
-        let parsed = ascii_row(text, vertex, columns);
         parsed.map_err(|e| e.at_line(input.line))?;
         columns.push(row);
     }
-    Ok(())
+    Ok(None)
 }
 
 fn expected(vertex: &Element, got: u64) -> String {
