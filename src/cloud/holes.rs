@@ -2,14 +2,15 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::Samples;
 use super::areas::tangents;
 use super::groups::Groups;
 use super::neighbours::{Near, Neighbours};
-use crate::geom::Aabb;
+use crate::geom::{Aabb, Ray};
+use crate::num::eigen::symmetric3;
 
 /// Radius of an empty disc that makes a hole, per spacing: one width. The weights of both sides of anything
 /// narrower span it; and in a random sampling (Poisson) a disc of this size is empty with probability
@@ -26,6 +27,11 @@ const AROUND: usize = 30;
 /// Rims of fewer samples are chance: an empty disc in a random sampling touches three to five, a round hole of
 /// twice its size has two dozen around it.
 const LEAST_RIM: usize = 10;
+
+/// Lines through each hole that are tried.
+const TRIED: usize = 16;
+/// They lean from the normal of the rim's plane by up to so much: no scanner's grid lies along them.
+const LEAN: f64 = 0.1;
 
 /// A hole, or the outer rim of a sheet.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,6 +62,30 @@ pub fn holes(samples: &Samples) -> Vec<Hole> {
     order.sort_unstable_by_key(|&at| (labels[at], at));
     let pieces = order.chunk_by(|&a, &b| labels[a] == labels[b]);
     pieces.filter_map(|piece| hole(samples, piece.iter().map(|&at| rim[at]).collect())).collect()
+}
+
+impl Hole {
+    /// Lines through the middle of the hole, across the plane of its rim: each halfway between a sample of the rim and that
+    /// farthest from it, as long as `length` to both sides.
+    pub fn lines(&self, points: &[DVec3], length: f64) -> Vec<Ray> {
+        let rim: Vec<DVec3> = self.rim.iter().map(|i| points[*i as usize]).collect();
+        let mean = rim.iter().sum::<DVec3>() / rim.len() as f64;
+        let outer = |d: DVec3| DMat3::from_cols(d * d.x, d * d.y, d * d.z);
+        let spread = rim.iter().map(|p| outer(*p - mean)).fold(DMat3::ZERO, |a, b| a + b);
+        let axes = symmetric3(spread).1;
+        let line = |k: usize| {
+            let p = rim[k * rim.len() / TRIED];
+            let farthest = rim
+                .iter()
+                .copied()
+                .max_by(|a, b| (*a - p).length_squared().total_cmp(&(*b - p).length_squared()));
+            let middle = 0.5 * (p + farthest.unwrap_or(p));
+            let (sin, cos) = (TAU * k as f64 / TRIED as f64).sin_cos();
+            let dir = (axes.x_axis + LEAN * (cos * axes.y_axis + sin * axes.z_axis)).normalize();
+            Ray::new(middle - length * dir, 2.0 * length * dir)
+        };
+        (0..TRIED).map(line).collect()
+    }
 }
 
 /// Groups of rim samples at most a disc's diameter apart.

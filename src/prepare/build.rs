@@ -20,14 +20,21 @@ use crate::solid::{Body, Counts, Solid, points};
 /// A scan, with what has been found out about it so far.
 #[derive(Debug)]
 struct Scan {
-    samples: Samples,
+    whole: Part,
     sampling: SampleOptions,
     options: Options,
-    surface: Arc<PointSet>,
     measured: Option<(Solidity, Arc<PointSet>)>,
-    holes: Option<Vec<Hole>>,
+    /// What bounds an inside, with its holes, once it was asked for; the same as the whole where nothing was left out.
+    bounding: Option<(Part, Vec<Hole>)>,
     /// Closed with holes up to so wide, own units.
     closed: Vec<(f64, Arc<PointSet>)>,
+}
+
+/// Samples and their surface.
+#[derive(Clone, Debug)]
+struct Part {
+    samples: Arc<Samples>,
+    surface: Arc<PointSet>,
 }
 
 /// What a leaf has become.
@@ -120,7 +127,7 @@ impl<'a> Builder<'a> {
     pub fn lacks_color(&self, id: ScanId, material: Option<MaterialId>) -> bool {
         let reads =
             material.and_then(|m| self.materials.get(m.0 as usize)).is_some_and(Material::reads_color);
-        reads && self.scan[id.0].samples.colors.is_none()
+        reads && self.scan[id.0].whole.samples.colors.is_none()
     }
 
     /// Makes a surface of a cloud.
@@ -147,19 +154,21 @@ impl<'a> Builder<'a> {
 
     /// Adds a scan.
     pub fn add(&mut self, name: &str, samples: Samples, sampling: SampleOptions, options: Options) -> ScanId {
-        let surface = surface_of(&samples, &options);
         let notes = samples.notes.clone();
         self.scans.push(ScanReport { name: name.to_owned(), samples: samples.len(), notes });
-        let scan =
-            Scan { samples, sampling, options, surface, measured: None, holes: None, closed: Vec::new() };
+        let whole = Part::new(samples, &options);
+        let scan = Scan { whole, sampling, options, measured: None, bounding: None, closed: Vec::new() };
         self.scan.push(scan);
         ScanId(self.scan.len() - 1)
     }
 
-    /// What a scan is made from: its samples and how they and the surface were made.
-    pub fn parts(&self, id: ScanId) -> (&Samples, SampleOptions, Options) {
+    /// What a scan is made from: its samples, those of its closed surface if asked for, and how they and the surface
+    /// were made.
+    pub fn parts(&self, id: ScanId, closed: bool) -> (Arc<Samples>, SampleOptions, Options) {
         let scan = &self.scan[id.0];
-        (&scan.samples, scan.sampling, scan.options)
+        let bounding = scan.bounding.as_ref().filter(|_| closed);
+        let part = bounding.map_or(&scan.whole, |b| &b.0);
+        (part.samples.clone(), scan.sampling, scan.options)
     }
 
     /// Adds to what is told about a scan.
@@ -167,28 +176,32 @@ impl<'a> Builder<'a> {
         self.scans[id.0].notes.push(note);
     }
 
-    /// Whether the holes of a scan have been looked for.
-    pub fn holes_known(&self, id: ScanId) -> bool {
-        self.scan[id.0].holes.is_some()
+    /// Whether a scan was closed before.
+    pub fn was_closed(&self, id: ScanId) -> bool {
+        self.scan[id.0].bounding.is_some()
     }
 
-    /// The holes of a scan, once they were looked for.
-    pub fn known_holes(&self, id: ScanId) -> &[Hole] {
-        self.scan[id.0].holes.as_deref().unwrap_or_default()
+    /// The holes of a scan that was closed.
+    pub fn closed_holes(&self, id: ScanId) -> &[Hole] {
+        self.scan[id.0].bounding.as_ref().map_or(&[], |b| &b.1)
     }
 
     /// The surface as it stands: a sheet, its solidity not asked for.
     pub fn unmeasured(&self, id: ScanId) -> Arc<PointSet> {
-        self.scan[id.0].surface.clone()
+        self.scan[id.0].whole.surface.clone()
     }
 
     /// The surface with its solidity measured.
     pub fn measured(&mut self, id: ScanId) -> (Solidity, Arc<PointSet>) {
         let scan = &mut self.scan[id.0];
         if scan.measured.is_none() {
-            let solidity = scan.surface.measure();
+            let Part { samples, surface } = &scan.whole;
+            let mut solidity = surface.measure();
+            if solidity.body() == Body::Solid {
+                try_holes(&mut solidity, surface, samples, &holes(samples));
+            }
             self.counts.add(&solidity.counts);
-            let surface = scan.surface.with_body(solidity.body());
+            let surface = surface.with_body(solidity.body());
             scan.measured = Some((solidity, Arc::new(surface)));
         }
         let (solidity, surface) = scan.measured.as_ref().unwrap_or_else(|| unreachable!("just measured"));
@@ -202,26 +215,52 @@ impl<'a> Builder<'a> {
         if let Some((_, surface)) = scan.closed.iter().find(|c| c.0 == max_hole) {
             return Ok(surface.clone());
         }
-        if scan.holes.is_none() {
-            let keep = bounding(&scan.samples, &scan.samples.winding(Winding::OPENING));
-            let scraps = keep.iter().filter(|k| !**k).count();
+        if scan.bounding.is_none() {
+            let (part, scraps) = scan.whole.bounding(&scan.options);
             if 0 < scraps {
                 let note = format!("{scraps} samples bound no inside and were dropped to close the scan");
                 self.scans[id.0].notes.push(note);
-                scan.samples = scan.samples.selected(&keep);
-                scan.surface = surface_of(&scan.samples, &scan.options);
             }
+            let found = holes(&part.samples);
+            scan.bounding = Some((part, found));
         }
-        let found = scan.holes.get_or_insert_with(|| holes(&scan.samples));
+        let Some((part, found)) = &scan.bounding else { unreachable!("just made") };
         let widest = found.iter().map(|h| h.width).fold(0.0, f64::max);
         if max_hole < widest {
             return Err(widest);
         }
         let rims: Vec<Vec<u32>> = found.iter().map(|h| h.rim.clone()).collect();
-        let surface = Arc::new(scan.surface.closed(&rims));
+        let surface = Arc::new(part.surface.closed(&rims));
         scan.closed.push((max_hole, surface.clone()));
         Ok(surface)
     }
+}
+
+impl Part {
+    fn new(samples: Samples, options: &Options) -> Part {
+        let surface = surface_of(&samples, options);
+        Part { samples: Arc::new(samples), surface }
+    }
+
+    /// The same without samples that bound no inside, and how many these are.
+    fn bounding(&self, options: &Options) -> (Part, usize) {
+        let keep = bounding(&self.samples, &self.samples.winding(Winding::OPENING));
+        match keep.iter().filter(|k| !**k).count() {
+            0 => (self.clone(), 0),
+            scraps => (Part::new(self.samples.selected(&keep), options), scraps),
+        }
+    }
+}
+
+/// Adds to what chords say of a surface which of its holes are open.
+pub(super) fn try_holes(solidity: &mut Solidity, surface: &PointSet, samples: &Samples, holes: &[Hole]) {
+    let length = samples.bounds().diagonal();
+    let lines: Vec<_> = holes.iter().map(|hole| hole.lines(&samples.points, length)).collect();
+    let open = surface.open_holes(&lines);
+    let open = || holes.iter().zip(&open).filter(|h| *h.1).map(|h| h.0);
+    let area: f64 = samples.spacing.iter().map(|s| s * s).sum();
+    solidity.open_holes = open().count() as u32;
+    solidity.missing = open().map(|h| 0.25 * std::f64::consts::PI * h.width * h.width).sum::<f64>() / area;
 }
 
 fn surface_of(samples: &Samples, options: &Options) -> Arc<PointSet> {
@@ -235,8 +274,12 @@ fn surface_of(samples: &Samples, options: &Options) -> Arc<PointSet> {
 impl Solidity {
     /// What to say beside a place that wants an inside.
     pub(super) fn complaint(&self) -> String {
-        let share = 100.0 * self.odd_share();
         debug_assert!(self.body() == Body::Sheet);
+        if 0 < self.open_holes {
+            let (s, share) = (if self.open_holes == 1 { "" } else { "s" }, 100.0 * self.missing);
+            return format!("a Sheet: {} open hole{s}, {share:.2} % of its area", self.open_holes);
+        }
+        let share = 100.0 * self.odd_share();
         format!("a Sheet: {share:.1} % of test lines cross it an odd number of times")
     }
 }

@@ -90,8 +90,8 @@ impl Builder<'_> {
         }
         let surface = closed.clone().unwrap_or_else(|| self.unmeasured(id));
         let caps = if closed.is_some() { self.cap_sites(id, &surface) } else { Vec::new() };
-        let (samples, sampling, options) = self.parts(id);
-        let boundary = Boundary::new(&surface, samples, caps, by);
+        let (samples, sampling, options) = self.parts(id, closed.is_some());
+        let boundary = Boundary::new(&surface, &samples, caps, by);
         let (moved, dropped) = boundary.moved();
         let cloud = Cloud {
             points: moved.iter().map(|s| s.at + by * s.normal).collect(),
@@ -126,7 +126,7 @@ impl Builder<'_> {
     /// A moved scan that is no solid by itself although it was made of one: a sharp ridge, where two sides of what is left
     /// meet, is finer than its samples tell. It is closed as a scan with holes is, and that is noted.
     pub fn mended(&mut self, id: ScanId, solidity: &Solidity) -> Arc<PointSet> {
-        let known = self.holes_known(id);
+        let known = self.was_closed(id);
         let surface = self.closed(id, f64::INFINITY).unwrap_or_else(|_| self.unmeasured(id));
         if !known {
             let share = 100.0 * solidity.odd_share();
@@ -141,9 +141,9 @@ impl Builder<'_> {
         const CANDIDATES: f64 = 4.0;
         const MOST: f64 = 2e6;
         const APART: f64 = 0.8;
-        let samples = self.parts(id).0;
+        let samples = self.parts(id, true).0;
         let mut kept = Vec::new();
-        for hole in self.known_holes(id) {
+        for hole in self.closed_holes(id) {
             let spacing = hole.rim.iter().map(|i| samples.spacing[*i as usize]);
             let spacing = spacing.fold(f64::INFINITY, f64::min);
             let around = hole.bounds.inflated(spacing);

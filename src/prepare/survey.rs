@@ -3,6 +3,7 @@
 use glam::DVec3;
 use serde::Serialize;
 
+use super::build::try_holes;
 use super::fitness::{Fitness, asked, is_single};
 use crate::cloud::holes::holes;
 use crate::cloud::neighbours::{Near, Neighbours};
@@ -26,6 +27,8 @@ pub struct Spread {
 pub struct Holes {
     /// How many.
     pub count: usize,
+    /// How many of them lines go through: the surface spans the others.
+    pub open: u32,
     /// The width of the widest: what `.close(max_hole:)` must allow.
     pub widest: f64,
 }
@@ -93,8 +96,9 @@ pub fn survey(cloud: Cloud) -> Result<Survey, CloudError> {
     let mut samples = Samples::new(cloud, &SampleOptions::default())?;
     let bounds = samples.bounds();
     let surface = PointSet::new(&samples.points, &samples.normals, &samples.widths, &Options::default());
-    let solidity = surface.measure_whole();
+    let mut solidity = surface.measure_whole();
     let found = holes(&samples);
+    try_holes(&mut solidity, &surface, &samples, &found);
     let body = if solidity.body() == Body::Solid { "Solid" } else { "Sheet" };
     let width = spread(&samples.widths);
     let tree = Neighbours::new(&samples.points);
@@ -115,7 +119,11 @@ pub fn survey(cloud: Cloud) -> Result<Survey, CloudError> {
         normals,
         opposed: samples.opposed,
         colors: samples.colors.is_some(),
-        holes: Holes { count: found.len(), widest: found.iter().map(|h| h.width).fold(0.0, f64::max) },
+        holes: Holes {
+            count: found.len(),
+            open: solidity.open_holes,
+            widest: found.iter().map(|h| h.width).fold(0.0, f64::max),
+        },
         inside: Inside { body, chords: solidity.chords, odd: solidity.odd },
         notes: std::mem::take(&mut samples.notes),
         warnings: fitness.concerns().into_iter().map(|c| format!("{}: {}", c.message, c.help)).collect(),

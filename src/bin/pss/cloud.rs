@@ -106,7 +106,10 @@ fn table(path: &Path, s: &Survey) -> String {
             "holes",
             match s.holes.count {
                 0 => "none".to_owned(),
-                n => format!("{n}, the widest {:.4e}: `.close(max_hole: ...)` must allow it", s.holes.widest),
+                n => format!(
+                    "{n}, {} open, the widest {:.4e}: `.close(max_hole: ...)` must allow it",
+                    s.holes.open, s.holes.widest
+                ),
             },
         ),
         (
