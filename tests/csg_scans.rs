@@ -430,3 +430,27 @@ fn f31_a_cloud_xor_its_analytic_twin_is_a_film_of_the_surface_s_own_error() {
     // Volume over 4 pi R^2: the mean thickness.
     assert!(sum / n <= 6.0 * sd, "{} {sd}", sum / n);
 }
+
+/// A scan that is closed in one place keeps, in another, the scraps that closing leaves out, whichever comes first.
+#[test]
+fn closing_a_scan_leaves_its_other_uses_alone() {
+    let (mut points, mut normals) = Truth::Sphere.cloud(6000);
+    // A scrap within the ball: it bounds nothing.
+    let scrap = (0..225).map(|i| DVec3::new(f64::from(i % 15), f64::from(i / 15), 0.0) * 0.045);
+    points.extend(scrap);
+    normals.resize(points.len(), DVec3::Z);
+    let folder = folder(&points, &normals);
+    let through = |text: &str| {
+        let world = prepared_in(text, folder.path()).shot.world;
+        let ray = Ray::new(DVec3::new(0.3, 0.3, 5.0), -DVec3::Z);
+        let mut hits = Vec::new();
+        world.sheets(&ray, Interval::ALL, &mut Scratch::default(), &mut hits);
+        hits.iter().map(|h| (h.boundary.t * 1e9).round()).collect::<Vec<_>>()
+    };
+    let scan = "let s = points(\"a.ply\")\n";
+    let alone = through(&format!("{scan}draw s"));
+    assert_eq!(alone.len(), 3);
+    let closed = "draw s.close(max_hole: 9).move([9, 0, 0])";
+    assert_eq!(through(&format!("{scan}draw s\n{closed}")), alone);
+    assert_eq!(through(&format!("{scan}{closed}\ndraw s")), alone);
+}

@@ -7,10 +7,13 @@ use std::path::PathBuf;
 use common::{Truth, all, chord};
 use glam::DVec3;
 use pss::cloud::holes::holes;
+use pss::cloud::scraps::bounding;
+use pss::cloud::winding::Winding;
 use pss::cloud::{Cloud, SampleOptions, Samples, ply};
 use pss::geom::Ray;
 use pss::solid::point_set::{Options, PointSet};
-use pss::solid::{Body, Scratch, Solid};
+use pss::solid::{Body, Counts, Scratch, Solid};
+use rayon::prelude::*;
 
 fn surface(samples: &Samples) -> PointSet {
     PointSet::new(&samples.points, &samples.normals, &samples.widths, &Options::default())
@@ -103,21 +106,44 @@ fn real_scans_are_what_they_are_known_for() {
     }
 }
 
+/// Chords that do not alternate between in and out, of so many; and the work.
+fn odd(set: &PointSet, samples: &Samples, chords: u64) -> (u64, Counts) {
+    let bounds = samples.bounds();
+    let one = |scratch: &mut Scratch, i: u64| {
+        scratch.counts = Counts::default();
+        let crossings = all(set, &chord(i, bounds.center(), 0.5 * bounds.diagonal()), scratch);
+        let alternate = crossings.iter().enumerate().all(|(k, c)| c.entering == (k % 2 == 0));
+        (u64::from(!alternate || crossings.len() % 2 != 0), scratch.counts)
+    };
+    let found: Vec<(u64, Counts)> = (0..chords).into_par_iter().map_init(Scratch::default, one).collect();
+    found.into_iter().fold((0, Counts::default()), |mut all, (odd, counts)| {
+        all.1.add(&counts);
+        (all.0 + odd, all.1)
+    })
+}
+
+/// `PSS_LONG=1` tries every scan, 10,000 chords each.
 #[test]
 fn lines_through_a_closed_scan_alternate() {
-    for name in ["bunny.ply", "igea.ply"] {
-        let Some(samples) = scan(name) else { continue };
-        let (set, bounds) = (closed(&samples), samples.bounds());
-        let mut scratch = Scratch::default();
-        let mut count = 0;
-        for i in 0..2000 {
-            let ray = chord(i, bounds.center(), 0.5 * bounds.diagonal());
-            let crossings = all(&set, &ray, &mut scratch);
-            assert!(crossings.iter().enumerate().all(|(k, c)| c.entering == (k % 2 == 0)), "{name} {i}");
-            assert_eq!(crossings.len() % 2, 0, "{name} {i}");
-            count += crossings.len();
+    let long = std::env::var_os("PSS_LONG").is_some();
+    let all = ["bunny", "igea", "dragon", "cactus", "lion", "pump", "bunny_raw", "happy_raw"];
+    for name in &all[..if long { all.len() } else { 2 }] {
+        let Some(samples) = scan(&format!("{name}.ply")) else { continue };
+        let chords = if long { 10_000 } else { 2000 };
+        let keep = bounding(&samples, &samples.winding(Winding::OPENING));
+        let samples = samples.selected(&keep);
+        let open = surface(&samples);
+        let before = if long { open.measure_whole().odd } else { 0 };
+        let (after, counts) = odd(&closed(&samples), &samples, chords);
+        println!(
+            "{name}: {before} of 10000 odd as it is, {after} of {chords} closed; {} crossings, {} on caps, {} repairs, {} undecided",
+            counts.crossings, counts.caps, counts.parity_repairs, counts.certificate_failures
+        );
+        assert_eq!(after, 0, "{name}");
+        if open.measure().body() == Body::Solid {
+            let (after, counts) = odd(&open.with_body(Body::Solid), &samples, chords);
+            println!("{name}: {after} of {chords} odd as a Solid, {} repairs", counts.parity_repairs);
+            assert_eq!(after, 0, "{name}");
         }
-        let per = scratch.counts.projections as f64 / scratch.counts.crossings as f64;
-        println!("{name}: {count} crossings, {per:.2} projections each, {:?}", scratch.counts);
     }
 }
