@@ -115,6 +115,60 @@ fn flipped(share: f64, all: bool) -> (Samples, usize) {
 }
 
 #[test]
+fn f18_few_flipped_normals_are_turned_back_too() {
+    for share in [0.0002, 0.001, 0.003, 0.01] {
+        let (_, wrong) = flipped(share, false);
+        assert_eq!(wrong, 0, "{share}");
+    }
+}
+
+/// 100 to 1 in density from pole to pole, with noise of 0.3 local spacings.
+#[test]
+fn f12_f20_normals_of_a_bare_uneven_noisy_ball_point_outward() {
+    let points = uneven_ball(20_000);
+    for noise in [0.0, 0.1, 0.3] {
+        let mut stream = Stream::new(8);
+        let mut shake = |p: &(DVec3, f64)| {
+            p.0 + noise * p.1 * DVec3::new(stream.normal(), stream.normal(), stream.normal())
+        };
+        let samples = bare(points.iter().map(&mut shake).collect());
+        println!("noise {noise}: {} of {} wrong", wrong(&samples, |p| p), samples.len());
+        assert_eq!(wrong(&samples, |p| p), 0, "noise {noise}");
+    }
+}
+
+/// Points of the unit sphere with their local spacings, a hundred times denser at one pole than at the other.
+fn uneven_ball(n: usize) -> Vec<(DVec3, f64)> {
+    let mut stream = Stream::new(77);
+    // Density e^(k z) with e^(2 k) = 100: the inverse of its integral, in z.
+    let k = 0.5 * 100f64.ln();
+    let (low, high) = ((-k).exp(), k.exp());
+    let one = |i: usize| {
+        let u = (i as f64 + stream.unit()) / n as f64;
+        let z = ((low + u * (high - low)).ln() / k).clamp(-1.0, 1.0);
+        let (sin, cos) = (std::f64::consts::PI * (3.0 - 5f64.sqrt()) * i as f64).sin_cos();
+        let r = (1.0 - z * z).sqrt();
+        // Points on area: n k e^(k z) / ((high - low) 2 pi).
+        let density = n as f64 * k * (k * z).exp() / ((high - low) * std::f64::consts::TAU);
+        (DVec3::new(r * cos, r * sin, z), density.sqrt().recip())
+    };
+    (0..n).map(one).collect()
+}
+
+#[test]
+fn f27_noisy_normals_are_the_same_bits_for_any_number_of_threads() {
+    let (points, _) = Truth::Torus.cloud(6000);
+    let points = shaken(&points, 0.3 * (Truth::Torus.area() / 6000.0).sqrt());
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| bare(points.clone()))
+    };
+    let one = with(1);
+    assert!(one.notes.iter().any(|n| n.starts_with("noisy")), "{:?}", one.notes);
+    assert!(one == with(2) && one == with(5));
+}
+
+#[test]
 fn f18_normals_flipped_at_random_are_turned_back_and_it_is_said() {
     for share in [0.05, 0.1, 0.2] {
         let (samples, wrong) = flipped(share, false);

@@ -13,7 +13,7 @@ use super::neighbours::Table;
 
 pub use estimate::{NORMAL_NEIGHBOURS, estimate, roughness};
 pub use improve::improve;
-pub use orient::{Spread, agreement, orient};
+pub use orient::{Spread, agreement, orient, outvoted};
 
 use coarse::Coarse;
 
@@ -81,7 +81,8 @@ fn estimated(scene: Scene<'_>, spread: Spread) -> Oriented {
     let areas = scene.areas(&normals);
     orient(scene, &areas, &mut normals, spread);
     let mut notes = Vec::new();
-    let flips = improve(scene, &areas, &mut normals, ROUNDS);
+    let all = (0..normals.len() as u32).collect();
+    let flips = improve(scene, &areas, &mut normals, all, ROUNDS);
     if 0 < flips {
         notes.push(format!("{flips} estimated normals were turned by the winding number"));
     }
@@ -117,12 +118,18 @@ pub fn from_file(scene: Scene<'_>, given: Vec<DVec3>) -> Oriented {
     let mut opposed = agreement(&normals, scene.table);
     let given_opposed = opposed;
     let areas = scene.areas(&normals);
-    if DOUBTFUL < opposed {
-        let flips = improve(scene, &areas, &mut normals, ROUNDS);
+    let doubtful = DOUBTFUL < opposed;
+    let asked = if doubtful { (0..normals.len() as u32).collect() } else { outvoted(&normals, scene.table) };
+    let flips = improve(scene, &areas, &mut normals, asked, ROUNDS);
+    if doubtful {
         let share = 100.0 * opposed;
         notes.push(format!(
             "{share:.1} % of near samples had opposed normals: {flips} were turned by the winding number"
         ));
+    } else if 0 < flips {
+        notes.push(format!("{flips} normals opposed to those around them were turned"));
+    }
+    if 0 < flips {
         opposed = agreement(&normals, scene.table);
     }
     if scene.is_inside_out(&areas, &normals) {

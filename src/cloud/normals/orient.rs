@@ -172,10 +172,20 @@ impl Shape {
 /// The share of pairs of a sample and one of its nearest whose normals are opposed.
 pub fn agreement(normals: &[DVec3], table: &Table) -> f64 {
     let k = table.k().min(NEAREST);
-    let opposed =
-        |i: usize| table.row(i)[..k].iter().filter(|&&j| normals[i].dot(normals[j as usize]) < 0.0).count();
-    let count: usize = (0..normals.len()).map(opposed).sum();
+    let count: usize = (0..normals.len()).map(|i| opposed(normals, table, i)).sum();
     count as f64 / (normals.len() * k).max(1) as f64
+}
+
+/// Samples that all of their nearest but one or none are opposed to: turned by mistake, or on a sharp edge.
+pub fn outvoted(normals: &[DVec3], table: &Table) -> Vec<u32> {
+    let most = table.k().min(NEAREST).max(2) - 1;
+    (0..normals.len() as u32).filter(|i| most <= opposed(normals, table, *i as usize)).collect()
+}
+
+/// How many of the nearest are opposed to a sample.
+fn opposed(normals: &[DVec3], table: &Table, i: usize) -> usize {
+    let nearest = &table.row(i)[..table.k().min(NEAREST)];
+    nearest.iter().filter(|&&j| normals[i].dot(normals[j as usize]) < 0.0).count()
 }
 
 /// Estimates the normals that are zero, with the sign of their neighbours; returns how many.
