@@ -17,6 +17,13 @@ fn rendered(cloud: impl AsRef<[u8]>, flags: &[&str]) -> Ran {
     ran
 }
 
+/// What is said of a scene.
+fn said_of(scene: &str, cloud: impl AsRef<[u8]>) -> String {
+    let folder = Folder::new();
+    folder.write("a.pss", scene).write("a.ply", cloud);
+    folder.run(&["render", "a.pss", "-o", "a.png", "--size", "8x8", "--spp", "1"]).stderr
+}
+
 /// What is warned of when a cloud is drawn.
 fn warned(cloud: impl AsRef<[u8]>) -> String {
     let ran = rendered(&cloud, &[]);
@@ -93,7 +100,7 @@ fn f14_noise_above_a_third_of_the_width_is_warned_of() {
 }
 
 #[test]
-fn f17_walls_thinner_than_two_and_a_half_widths_are_warned_of() {
+fn f17_walls_thinner_than_the_weights_tell_apart_are_warned_of() {
     let shells = |gap: f64| {
         let outer = sphere(8000, 1.0);
         let row = |p: DVec3, n: DVec3| format!("{} {} {} {} {} {}", p.x, p.y, p.z, n.x, n.y, n.z);
@@ -103,9 +110,12 @@ fn f17_walls_thinner_than_two_and_a_half_widths_are_warned_of() {
             ["x", "y", "z", "nx", "ny", "nz"].map(|name| format!("property float {name}\n")).concat();
         ply_of(16_000, &columns, rows.into_iter())
     };
-    // Samples are 0.04 apart.
+    // Samples are 0.04 apart, widths twice that: walls of 0.75, 2 and 5 widths.
     says(&warned(shells(0.06)), &["warning[W0105]", "walls thinner"]);
-    assert_eq!(warned(shells(0.4)), "");
+    assert_eq!(warned(shells(0.16)), "");
+    let mixed = "draw points(\"a.ply\", facing: \"any\")\n";
+    says(&said_of(mixed, shells(0.16)), &["warning[W0105]", "walls thinner"]);
+    assert_eq!(said_of(mixed, shells(0.4)), "");
 }
 
 #[test]

@@ -61,8 +61,8 @@ pub struct Samples {
     pub colors: Option<Vec<[f32; 3]>>,
     /// Share of the pairs of near samples whose normals are opposed; above 0.01 the cloud is no solid to trust.
     pub opposed: f64,
-    /// The same of the normals that the file gave, before any was turned.
-    pub given_opposed: f64,
+    /// Normals of the file that were turned singly.
+    pub turned: usize,
     /// What was dropped or mended on the way, one sentence each.
     pub notes: Vec<String>,
 }
@@ -91,10 +91,10 @@ impl Samples {
         let scene = Scene { points: &points, table: &table, widths: &widths };
         let given = normals.filter(|_| options.normals == NormalSource::File);
         let oriented = given.map_or_else(|| normals::from_points(scene), |n| normals::from_file(scene, n));
-        let Oriented { normals, opposed, given_opposed, notes: more } = oriented;
+        let Oriented { normals, opposed, turned, notes: more } = oriented;
         notes.extend(more);
         let widths = widths.iter().map(|h| options.width.unwrap_or(*h) * options.smoothing).collect();
-        Ok(Samples { points, normals, widths, spacing, colors, opposed, given_opposed, notes })
+        Ok(Samples { points, normals, widths, spacing, colors, opposed, turned, notes })
     }
 
     /// How many there are.

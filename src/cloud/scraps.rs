@@ -35,7 +35,7 @@ impl Samples {
             spacing: pick(&self.spacing, keep),
             colors: self.colors.as_ref().map(|c| pick(c, keep)),
             opposed: self.opposed,
-            given_opposed: self.given_opposed,
+            turned: self.turned,
             notes: self.notes.clone(),
         }
     }

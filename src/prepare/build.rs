@@ -146,10 +146,11 @@ impl<'a> Builder<'a> {
         };
         let single = fitness::is_single(&cloud);
         let samples = Samples::new(cloud, &options).map_err(|e| cloud_complaint(call, "the cloud", e))?;
-        let concerns = Fitness::new(&samples, &Neighbours::new(&samples.points), single).concerns();
+        let (made, tree) = (points::options(call), Neighbours::new(&samples.points));
+        let concerns = Fitness::new(&samples, &tree, single, made.mixed).concerns();
         let warning = |c: Concern| Diagnostic::warning(c.code, c.message).at(call.at, "").help(c.help);
         self.warnings.extend(concerns.into_iter().map(warning));
-        Ok(self.add(name, samples, options, points::options(call)))
+        Ok(self.add(name, samples, options, made))
     }
 
     /// Adds a scan.

@@ -6,8 +6,11 @@ use crate::cloud::neighbours::{Near, Neighbours};
 use crate::cloud::{Cloud, Samples};
 use crate::num::eigen::symmetric3;
 
-/// A wall thinner than so many widths is moved by the far side: by 0.5 % of a width at 2.5, 2.6 % at 2 (Gaussian).
-const THINNEST: f64 = 2.5;
+/// A wall thinner than so many widths is not told apart: no sample's side of it is certain.
+const THINNEST: f64 = 1.25;
+/// Where samples weigh whichever way they face, the far side of a wall thinner than so many widths moves the near one: by
+/// 0.5 % of a width at 2.5, 2.6 % at 2 (Gaussian). Else it has no weight: at 1.5 widths the wall keeps its thickness to 1e-9.
+const THINNEST_MIXED: f64 = 2.5;
 /// Noise above this share of the width shows in the surface's topology: 5 of 600 lines were wrong at 0.47.
 const NOISIEST: f64 = 1.0 / 3.0;
 /// Samples that are asked, where not all need to be.
@@ -28,8 +31,8 @@ pub(super) struct Fitness {
     step: Option<f64>,
     spacing: f64,
     width: f64,
-    /// Before any was turned.
-    opposed: f64,
+    /// Share of the samples whose normal in the file was turned.
+    turned: f64,
 }
 
 /// Something that may go wrong.
@@ -49,19 +52,21 @@ pub(super) fn is_single(cloud: &Cloud) -> bool {
 }
 
 impl Fitness {
-    /// Measures samples. `tree` is over their points; `single` as [`is_single`] says.
-    pub fn new(samples: &Samples, tree: &Neighbours, single: bool) -> Fitness {
+    /// Measures samples. `tree` is over their points; `single` as [`is_single`] says, `mixed` as
+    /// [`Options`](crate::solid::point_set::Options).
+    pub fn new(samples: &Samples, tree: &Neighbours, single: bool, mixed: bool) -> Fitness {
+        let thinnest = if mixed { THINNEST_MIXED } else { THINNEST };
         let bounds = samples.bounds();
         let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
         let width = median(samples.widths.clone());
         Fitness {
             noise: noise(samples, tree),
-            thin: thin(samples, tree),
-            smallest_wall: THINNEST * width,
+            thin: thin(samples, tree, thinnest),
+            smallest_wall: thinnest * width,
             step: single.then_some(farthest * f64::from(f32::EPSILON)),
             spacing: median(samples.spacing.clone()),
             width,
-            opposed: samples.given_opposed,
+            turned: samples.turned as f64 / samples.len().max(1) as f64,
         }
     }
 
@@ -81,12 +86,14 @@ impl Fitness {
         }
         if NOTICED < self.thin {
             let (share, wall) = (100.0 * self.thin, self.smallest_wall);
-            let message =
-                format!("{share:.1} % of samples lie on walls thinner than {wall:.4}, which move each other");
+            let message = format!(
+                "{share:.1} % of samples lie on walls thinner than {wall:.4}, finer than the surface resolves"
+            );
             add("W0105", message, "lower `smoothing:`, or scan more densely");
         }
-        if NOTICED < self.opposed {
-            let message = format!("{:.1} % of near samples have opposed normals", 100.0 * self.opposed);
+        if NOTICED < self.turned {
+            let message =
+                format!("{:.1} % of normals contradicted the rest and were turned", 100.0 * self.turned);
             add("W0106", message, "try `normals: \"estimate\"`");
         }
         out
@@ -124,11 +131,11 @@ fn noise(samples: &Samples, tree: &Neighbours) -> f64 {
 }
 
 /// The share of samples behind which, nearer than the smallest wall of their width, another sheet faces away.
-fn thin(samples: &Samples, tree: &Neighbours) -> f64 {
+fn thin(samples: &Samples, tree: &Neighbours, thinnest: f64) -> f64 {
     let mut near: Vec<Near> = Vec::new();
     let is_thin = |i: usize| {
         let (p, n) = (samples.points[i], samples.normals[i]);
-        tree.within(p, THINNEST * samples.widths[i], &mut near);
+        tree.within(p, thinnest * samples.widths[i], &mut near);
         near.iter().any(|x| {
             let d = samples.points[x.index as usize] - p;
             // Behind, within 30 degrees of straight, and facing away.

@@ -95,14 +95,15 @@ pub fn survey(cloud: Cloud) -> Result<Survey, CloudError> {
     let single = is_single(&cloud);
     let mut samples = Samples::new(cloud, &SampleOptions::default())?;
     let bounds = samples.bounds();
-    let surface = PointSet::new(&samples.points, &samples.normals, &samples.widths, &Options::default());
+    let options = Options::default();
+    let surface = PointSet::new(&samples.points, &samples.normals, &samples.widths, &options);
     let mut solidity = surface.measure_whole();
     let found = holes(&samples);
     try_holes(&mut solidity, &surface, &samples, &found);
     let body = if solidity.body() == Body::Solid { "Solid" } else { "Sheet" };
     let width = spread(&samples.widths);
     let tree = Neighbours::new(&samples.points);
-    let fitness = Fitness::new(&samples, &tree, single);
+    let fitness = Fitness::new(&samples, &tree, single, options.mixed);
     Ok(Survey {
         version: 1,
         points,

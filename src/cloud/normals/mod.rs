@@ -42,8 +42,8 @@ pub struct Oriented {
     pub normals: Vec<DVec3>,
     /// Share of the pairs of near neighbours whose normals are opposed.
     pub opposed: f64,
-    /// The same of the normals that were given, before any was turned.
-    pub given_opposed: f64,
+    /// Given normals that were turned singly.
+    pub turned: usize,
     /// What was mended, one sentence each.
     pub notes: Vec<String>,
 }
@@ -73,7 +73,7 @@ pub fn from_points(scene: Scene<'_>) -> Oriented {
     let normals = coarse.spread(scene.points, &normals);
     notes.push(format!("noisy: normals are those of {} means of near samples", coarse.points.len()));
     let opposed = agreement(&normals, scene.table);
-    Oriented { normals, opposed, given_opposed: opposed, notes }
+    Oriented { normals, opposed, turned: 0, notes }
 }
 
 fn estimated(scene: Scene<'_>, spread: Spread) -> Oriented {
@@ -87,7 +87,7 @@ fn estimated(scene: Scene<'_>, spread: Spread) -> Oriented {
         notes.push(format!("{flips} estimated normals were turned by the winding number"));
     }
     let opposed = agreement(&normals, scene.table);
-    Oriented { normals, opposed, given_opposed: opposed, notes }
+    Oriented { normals, opposed, turned: 0, notes }
 }
 
 /// The median of the roughness of samples spread over the cloud.
@@ -116,7 +116,6 @@ pub fn from_file(scene: Scene<'_>, given: Vec<DVec3>) -> Oriented {
         notes.push(format!("{missing} missing normals were estimated"));
     }
     let mut opposed = agreement(&normals, scene.table);
-    let given_opposed = opposed;
     let areas = scene.areas(&normals);
     let doubtful = DOUBTFUL < opposed;
     let asked = if doubtful { (0..normals.len() as u32).collect() } else { outvoted(&normals, scene.table) };
@@ -136,7 +135,7 @@ pub fn from_file(scene: Scene<'_>, given: Vec<DVec3>) -> Oriented {
         normals.iter_mut().for_each(|n| *n = -*n);
         notes.push("all normals point inward and were turned".to_string());
     }
-    Oriented { normals, opposed, given_opposed, notes }
+    Oriented { normals, opposed, turned: flips, notes }
 }
 
 impl Scene<'_> {
