@@ -178,7 +178,7 @@ pub fn agreement(normals: &[DVec3], table: &Table) -> f64 {
 
 /// Samples that all of their nearest but one or none are opposed to: turned by mistake, or on a sharp edge.
 pub fn outvoted(normals: &[DVec3], table: &Table) -> Vec<u32> {
-    let most = table.k().min(NEAREST).max(2) - 1;
+    let most = table.k().clamp(2, NEAREST) - 1;
     (0..normals.len() as u32).filter(|i| most <= opposed(normals, table, *i as usize)).collect()
 }
 
