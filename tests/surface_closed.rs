@@ -113,7 +113,7 @@ fn odd(set: &PointSet, samples: &Samples, chords: u64) -> (u64, Counts) {
         scratch.counts = Counts::default();
         let crossings = all(set, &chord(i, bounds.center(), 0.5 * bounds.diagonal()), scratch);
         let alternate = crossings.iter().enumerate().all(|(k, c)| c.entering == (k % 2 == 0));
-        (u64::from(!alternate || crossings.len() % 2 != 0), scratch.counts)
+        (u64::from(!alternate || !crossings.len().is_multiple_of(2)), scratch.counts)
     };
     let found: Vec<(u64, Counts)> = (0..chords).into_par_iter().map_init(Scratch::default, one).collect();
     found.into_iter().fold((0, Counts::default()), |mut all, (odd, counts)| {
