@@ -170,9 +170,12 @@ fn f27_noisy_normals_are_the_same_bits_for_any_number_of_threads() {
 
 #[test]
 fn f18_normals_flipped_at_random_are_turned_back_and_it_is_said() {
+    let (clean, _) = flipped(0.0, false);
     for share in [0.05, 0.1, 0.2] {
         let (samples, wrong) = flipped(share, false);
         assert_eq!(wrong, 0, "{share}");
+        // The same bits as those of the clean cloud: so is the surface, on every ray.
+        assert!(samples.points == clean.points && samples.normals == clean.normals, "{share}");
         assert!(samples.notes.iter().any(|n| n.contains("opposed")), "{:?}", samples.notes);
     }
 }
