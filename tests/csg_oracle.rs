@@ -176,6 +176,7 @@ fn renamed(expr: &Expr, order: &[u32]) -> Expr {
     match expr {
         Expr::Leaf(i) => Expr::Leaf(order.iter().position(|o| o == i).unwrap() as u32),
         Expr::Not(inner) => Expr::Not(Box::new(renamed(inner, order))),
+        Expr::Shared(inner) => Expr::Shared(renamed(inner, order).into()),
         Expr::Or(list) => Expr::Or(all(list)),
         Expr::And(list) => Expr::And(all(list)),
         Expr::Xor(list) => Expr::Xor(all(list)),

@@ -8,17 +8,19 @@ use super::owner::boundary;
 use super::spans::{Boundary, Span};
 use super::sweep::{Change, Sweep};
 use crate::geom::tolerance;
+use glam::DVec3;
 
 /// Changes of an object with the clean-up applied, lazily.
 pub(super) struct Cleaner<'a> {
     pub sweep: Sweep<'a>,
     /// A change already taken from the sweep.
     ahead: Option<Change>,
+    /// How far the ray begins from the world's own origin.
+    origin: f64,
     /// The largest tau that two leaves of the tree can have on this ray near its range.
     reach: f64,
     /// Whether the next span has already begun where the range begins.
     open: bool,
-    bound: Bound,
 }
 
 /// The largest that any leaf of a tree brings in, world lengths.
@@ -32,25 +34,30 @@ pub(super) struct Bound {
     pub grain: f64,
 }
 
-/// A change with the slope of its face: |dir . n|.
+/// A change with its face.
 #[derive(Clone, Copy)]
-struct Face {
-    change: Change,
-    slope: f64,
+pub(super) struct Face {
+    pub change: Change,
+    /// The outward unit normal of the leaf that crosses, world frame.
+    pub normal: DVec3,
+    /// |dir . n|.
+    pub slope: f64,
 }
 
 impl<'a> Cleaner<'a> {
     /// Starts the sweep.
-    pub fn new(mut sweep: Sweep<'a>, bound: Bound) -> Cleaner<'a> {
+    pub fn new(mut sweep: Sweep<'a>) -> Cleaner<'a> {
         let open = sweep.begin();
         // Two crossings, one for either face.
-        let reach = 2.0 * bound.shift + tolerance::cleanup(bound.scale.max(sweep.ray.origin.length()));
-        Cleaner { sweep, ahead: None, reach, open, bound }
+        let Bound { shift, scale, .. } = sweep.core.bound;
+        let origin = sweep.ray.origin.length();
+        let reach = 2.0 * shift + tolerance::cleanup(scale.max(origin));
+        Cleaner { sweep, ahead: None, origin, reach, open }
     }
 
     fn face(&mut self, change: Change) -> Face {
-        let normal = self.sweep.leaf_normal(change.leaf, &change.crossing);
-        Face { change, slope: self.sweep.ray.dir.dot(normal).abs() }
+        let normal = self.sweep.leaf_normal(change.met, &change.crossing);
+        Face { change, normal, slope: self.sweep.ray.dir.dot(normal).abs() }
     }
 
     /// Whether what lies between two faces is too thin to be told from nothing.
@@ -60,11 +67,12 @@ impl<'a> Cleaner<'a> {
 
     fn tau(&self, a: &Change, b: &Change) -> f64 {
         let ray = self.sweep.ray;
-        let leaves = [a, b].map(|c| &self.sweep.tree.leaves()[c.leaf as usize]);
+        let core = self.sweep.core;
+        let leaves = [a, b].map(|c| self.sweep.room.met[c.met as usize].leaf as usize);
         // Of the two points the nearer: a ray and its reverse find the same thin, and none past the horizon.
-        let scale = ray.origin.length().max(ray.at(a.t).length().min(ray.at(b.t).length()));
-        let scale = scale.max(leaves[0].scale()).max(leaves[1].scale());
-        let error = |i: usize, c: &Change| c.crossing.shift * leaves[i].place.stretch;
+        let scale = self.origin.max(ray.at(a.t).length().min(ray.at(b.t).length()));
+        let scale = scale.max(core.scales[leaves[0]]).max(core.scales[leaves[1]]);
+        let error = |i: usize, c: &Change| c.crossing.shift * core.tree.leaves()[leaves[i]].place.stretch;
         tolerance::cleanup(scale) + error(0, a) + error(1, b)
     }
 
@@ -114,14 +122,14 @@ impl<'a> Cleaner<'a> {
                 self.sweep.scratch.counts.cleaned += 1;
                 continue;
             }
-            let [enter, exit] = [enter, exit].map(|f| f.map(|f| self.owned(&f.change)));
+            let [enter, exit] = [enter, exit].map(|f| f.map(|f| self.owned(&f)));
             return Some(Span { enter, exit });
         }
     }
 
     /// The first boundary of the first span that survives, and whether the ray goes in there.
     pub fn first(&mut self) -> Option<(Boundary, bool)> {
-        self.first_face().map(|(face, entering)| (self.owned(&face.change), entering))
+        self.first_face().map(|(face, entering)| (self.owned(&face), entering))
     }
 
     /// Whether any span survives. A ray that asks this leaves a surface; spans that end so near to where it begins
@@ -135,13 +143,14 @@ impl<'a> Cleaner<'a> {
                 return false;
             }
             let length = self.sweep.ray.dir.length();
-            let coarsest = self.bound.grain;
+            let coarsest = self.sweep.core.bound.grain;
             let limit = match &enter {
                 None => f64::INFINITY,
                 Some(face) => self.horizon(face).max(begin + coarsest / length),
             };
             let Some(exit) = self.exit(limit) else { return true };
-            let leaf = &self.sweep.tree.leaves()[exit.change.leaf as usize];
+            let leaf = self.sweep.room.met[exit.change.met as usize].leaf;
+            let leaf = &self.sweep.core.tree.leaves()[leaf as usize];
             let grain = leaf.solid.grain() * leaf.place.stretch;
             let unresolved = (exit.change.t - begin) * length <= grain;
             let thin = enter.is_some_and(|enter| self.is_thin(&enter, &exit));
@@ -166,8 +175,8 @@ impl<'a> Cleaner<'a> {
         }
     }
 
-    fn owned(&mut self, change: &Change) -> Boundary {
+    fn owned(&mut self, face: &Face) -> Boundary {
         let reach = self.reach;
-        boundary(&mut self.sweep, change, reach)
+        boundary(&mut self.sweep, face, reach)
     }
 }

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::leaf::Leaf;
 use super::object::{Object, Scratch};
 use super::spans::{Boundary, Spans};
-use super::tree::Leaf;
 use crate::geom::{Aabb, Interval, Ray};
 use crate::solid::{self, Answer, Body, Crossing, Solid};
 

@@ -3,14 +3,21 @@
 
 mod cleanup;
 mod clip;
+mod expr;
+mod hierarchy;
+mod leaf;
 mod object;
 mod owner;
+mod queue;
+mod reach;
+mod room;
 mod spans;
 mod sweep;
 mod tree;
 mod truth;
 
 pub use clip::{Clipped, Clippee};
+pub use expr::Expr;
+pub use leaf::Leaf;
 pub use object::{Object, Scratch};
 pub use spans::{Boundary, Span, Spans};
-pub use tree::{Expr, Kind, Leaf, Tree};

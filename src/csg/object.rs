@@ -1,9 +1,17 @@
 //! An object: a tree with what its sweeps share.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use super::cleanup::{Bound, Cleaner};
+use super::expr::Expr;
+use super::hierarchy::{Hierarchy, worst_condition};
+use super::leaf::Leaf;
+use super::reach::reaches;
+use super::room::Room;
 use super::spans::{Boundary, Spans};
-use super::sweep::{Room, Sweep};
-use super::tree::{Expr, Leaf, Tree};
+use super::sweep::Sweep;
+use super::tree::Tree;
 use super::truth::State;
 use crate::geom::{Interval, Ray};
 use crate::solid;
@@ -13,7 +21,7 @@ use crate::solid;
 pub struct Scratch {
     /// What solids need; the counts of work.
     pub solid: solid::Scratch,
-    room: Room,
+    pub(super) room: Room,
 }
 
 impl Scratch {
@@ -23,36 +31,60 @@ impl Scratch {
     }
 }
 
-/// A solid made of solids.
-#[derive(Clone, Debug, Default)]
-pub struct Object {
-    tree: Tree,
-    outside: State,
-    bound: Bound,
+/// What all sweeps of an object read.
+#[derive(Debug, Default)]
+pub(super) struct Core {
+    /// Tells the objects of a process apart; no result depends on it.
+    pub id: u64,
+    pub tree: Tree,
+    pub hierarchy: Hierarchy,
+    pub outside: State,
+    /// For each leaf whether it is asked after the others.
+    pub costly: Vec<bool>,
+    /// For each leaf [`Leaf::scale`].
+    pub scales: Vec<f64>,
+    pub bound: Bound,
 }
 
-impl Object {
-    /// Combines leaves.
-    pub fn new(leaves: Vec<Leaf>, expr: &Expr) -> Object {
+impl Core {
+    fn new(leaves: Vec<Leaf>, expr: &Expr) -> Core {
+        static NEXT: AtomicU64 = AtomicU64::new(1);
         let most = |of: fn(&Leaf) -> f64| leaves.iter().map(of).fold(0.0, f64::max);
         let bound = Bound {
             scale: most(Leaf::scale),
             shift: most(|l| l.solid.shift_bound() * l.place.stretch),
             grain: most(|l| l.solid.grain() * l.place.stretch),
         };
+        let costly = leaves.iter().map(|l| l.solid.is_costly()).collect();
+        let scales = leaves.iter().map(Leaf::scale).collect();
+        let condition = worst_condition(leaves.iter().map(|l| l.place.condition));
         let tree = Tree::new(leaves, expr);
+        let hierarchy = Hierarchy::new(&reaches(&tree), condition);
         let outside = State::outside(&tree);
-        Object { tree, outside, bound }
+        let id = NEXT.fetch_add(1, Ordering::Relaxed);
+        Core { id, tree, hierarchy, outside, costly, scales, bound }
+    }
+}
+
+/// A solid made of solids. Copies share everything.
+#[derive(Clone, Debug, Default)]
+pub struct Object {
+    core: Arc<Core>,
+}
+
+impl Object {
+    /// Combines leaves.
+    pub fn new(leaves: Vec<Leaf>, expr: &Expr) -> Object {
+        Object { core: Arc::new(Core::new(leaves, expr)) }
     }
 
     /// The leaves.
     pub fn leaves(&self) -> &[Leaf] {
-        self.tree.leaves()
+        self.core.tree.leaves()
     }
 
     fn cleaner<'a>(&'a self, ray: &'a Ray, range: Interval, scratch: &'a mut Scratch) -> Cleaner<'a> {
-        let sweep = Sweep::new(&self.tree, &self.outside, ray, range, &mut scratch.room, &mut scratch.solid);
-        Cleaner::new(sweep, self.bound)
+        Cleaner::new(Sweep::new(&self.core, ray, range, &mut scratch.room, &mut scratch.solid))
     }
 
     /// The first boundary in the range, and whether the ray goes in there.

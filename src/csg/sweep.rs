@@ -1,15 +1,14 @@
 //! One sweep along a ray over the crossings of all leaves of an object.
 //!
 //! Crossings are taken by their exact t, all at one t together, and truth is compared before and after: no tolerance
-//! in here. Leaves are asked lazily: a leaf is out until the ray enters its box, then open; only where the object's
-//! truth is open is a leaf asked, the cheap before the costly, and only one whose answer can tell. So cutters are asked
-//! only where the base lives. What a leaf answers does not depend on when or for which range it is asked, so
-//! neither does any boundary.
+//! in here. Leaves come out of the hierarchy front to back. A leaf is out until the ray enters its box, then open; only
+//! where the object's truth is open is a leaf asked, the cheap before the costly, and only one whose answer can tell. So
+//! cutters are asked only where the base lives. What a leaf answers does not depend on when or for which range it is
+//! asked, so neither does any boundary.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
-use super::tree::Tree;
+use super::object::Core;
+use super::queue::{Event, What};
+use super::room::{Met, Room};
 use super::truth::{State, Truth};
 use crate::geom::{Interval, Ray};
 use crate::solid::{self, Answer, Crossing};
@@ -20,8 +19,8 @@ use glam::DVec3;
 pub(super) struct Change {
     /// Where.
     pub t: f64,
-    /// A leaf that crosses here: of several the one with the smallest key.
-    pub leaf: u32,
+    /// A leaf that crosses here: of several the one with the smallest key. Of the leaves met, which.
+    pub met: u32,
     /// Its crossing.
     pub crossing: Crossing,
     /// Whether the ray goes into the object.
@@ -30,69 +29,9 @@ pub(super) struct Change {
     pub tied: bool,
 }
 
-/// What happens to a leaf at some t.
-#[derive(Clone, Copy, PartialEq, Debug)]
-enum Event {
-    /// The ray enters the leaf's box, or the leaf's answer ends: its state is open.
-    Open,
-    /// A crossing.
-    Cross(Crossing),
-    /// The ray leaves the leaf's box.
-    Far,
-}
-
-/// Orders events by t, then by leaf, then as they were made; the order within one t changes nothing but the last
-/// state of a leaf that crosses twice there.
-#[derive(Clone, Copy, PartialEq, Debug)]
-struct Entry {
-    t: f64,
-    leaf: u32,
-    made: u32,
-    event: Event,
-}
-
-impl Eq for Entry {}
-
-impl PartialOrd for Entry {
-    fn partial_cmp(&self, other: &Entry) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Entry {
-    fn cmp(&self, other: &Entry) -> std::cmp::Ordering {
-        let ids = |e: &Entry| (e.leaf, e.made);
-        self.t.total_cmp(&other.t).then_with(|| ids(self).cmp(&ids(other)))
-    }
-}
-
-/// Room for sweeps of one tree.
-#[derive(Debug, Default)]
-pub(super) struct Room {
-    state: State,
-    /// Leaves whose box the ray meets, and where.
-    pub met: Vec<(u32, Interval)>,
-    /// Leaves that are open now.
-    open: Vec<u32>,
-    heap: BinaryHeap<Reverse<Entry>>,
-    made: u32,
-    /// Leaves that have been asked.
-    asked: Vec<u32>,
-    pub fresh: Vec<Crossing>,
-}
-
-impl Room {
-    fn push(&mut self, t: f64, leaf: u32, event: Event) {
-        self.made += 1;
-        self.heap.push(Reverse(Entry { t, leaf, made: self.made, event }));
-    }
-}
-
 /// A sweep in progress.
 pub(super) struct Sweep<'a> {
-    pub tree: &'a Tree,
-    /// [`State::outside`] of the tree.
-    pub outside: &'a State,
+    pub core: &'a Core,
     pub ray: &'a Ray,
     pub range: Interval,
     pub room: &'a mut Room,
@@ -100,102 +39,107 @@ pub(super) struct Sweep<'a> {
     /// Everything up to here is settled.
     pub at: f64,
     inside: bool,
-    begun: bool,
 }
 
 impl<'a> Sweep<'a> {
-    /// Meets the leaves' boxes.
+    /// Meets the boxes that have no end; the others are met on the way.
     pub fn new(
-        tree: &'a Tree,
-        outside: &'a State,
+        core: &'a Core,
         ray: &'a Ray,
         range: Interval,
         room: &'a mut Room,
         scratch: &'a mut solid::Scratch,
     ) -> Sweep<'a> {
-        room.state.copy_from(outside);
-        room.met.clear();
-        room.open.clear();
-        room.asked.clear();
-        room.heap.clear();
-        room.made = 0;
-        for (i, leaf) in tree.leaves().iter().enumerate() {
-            let inside = leaf.met(ray).intersect(range);
-            if !inside.is_empty() {
-                room.met.push((i as u32, inside));
-                room.push(inside.lo, i as u32, Event::Open);
-                if inside.hi < range.hi {
-                    room.push(inside.hi, i as u32, Event::Far);
-                }
+        room.enter(core.id, &core.outside);
+        let Room { met, walk, queue, .. } = room;
+        walk.begin(&core.hierarchy, ray, range, |leaf, inside| show(met, queue, range, leaf, inside));
+        Sweep { core, ray, range, room, scratch, at: range.lo, inside: false }
+    }
+
+    /// Lets the hierarchy show every leaf whose box begins up to `t`.
+    #[inline]
+    pub fn meet(&mut self, t: f64) {
+        let (core, range) = (self.core, self.range);
+        let Room { met, walk, queue, .. } = &mut *self.room;
+        while walk.least() <= t {
+            walk.step(&core.hierarchy, |leaf, inside| show(met, queue, range, leaf, inside));
+            if walk.least() == f64::INFINITY {
+                break;
             }
         }
-        Sweep { tree, outside, ray, range, room, scratch, at: range.lo, inside: false, begun: false }
+    }
+
+    /// The t of the next event up to `limit`, every leaf that begins before it met; infinite where there is none.
+    #[inline]
+    fn next_event(&mut self, limit: f64) -> f64 {
+        let (core, range) = (self.core, self.range);
+        let Room { met, walk, queue, .. } = &mut *self.room;
+        loop {
+            let next = queue.next_t();
+            let least = walk.least();
+            if next < least || limit < least || least == f64::INFINITY {
+                return next;
+            }
+            walk.step(&core.hierarchy, |leaf, inside| show(met, queue, range, leaf, inside));
+        }
     }
 
     /// Whether the ray is inside the object where the range begins.
     pub fn begin(&mut self) -> bool {
+        self.meet(self.range.lo);
         self.take_group(self.range.lo);
         self.resolve();
-        self.begun = true;
-        self.inside = self.room.state.root(self.tree) == Truth::Yes;
+        self.inside = self.room.state.root() == Truth::Yes;
         self.inside
     }
 
     /// The next change of the object's truth in the range and not after `limit`; a later call goes on from there.
     pub fn next_until(&mut self, limit: f64) -> Option<Change> {
-        debug_assert!(self.begun, "begin comes first");
         let limit = limit.min(self.range.hi);
-        while let Some(Reverse(first)) = self.room.heap.peek().copied() {
-            if limit < first.t {
-                break;
+        loop {
+            let t = self.next_event(limit);
+            if limit < t || t == f64::INFINITY {
+                return None;
             }
-            self.at = first.t;
-            let (toggled, tied) = self.take_group(first.t);
+            self.at = t;
+            let (toggled, tied) = self.take_group(t);
             let found = self.resolve();
-            let inside = self.room.state.root(self.tree) == Truth::Yes;
+            let inside = self.room.state.root() == Truth::Yes;
             // Truth changes where something crosses. A leaf that turns out to be inside where the ray enters its box
             // has crossed before: its box is too small. Its crossing is then late, but not lost.
             if inside != self.inside
-                && let Some((leaf, crossing)) = toggled.or(found)
+                && let Some((met, crossing)) = toggled.or(found)
             {
                 self.inside = inside;
                 // A leaf asked only now may have crossed here too.
                 let tied = tied || found.is_some();
-                return Some(Change { t: first.t, leaf, crossing, entering: inside, tied });
+                return Some(Change { t, met, crossing, entering: inside, tied });
             }
         }
-        None
     }
 
     /// Applies all events at one t; returns the crossing of the leaf with the smallest key, and whether others cross.
     fn take_group(&mut self, t: f64) -> (Option<(u32, Crossing)>, bool) {
+        let tree = &self.core.tree;
         let mut best: Option<(u32, Crossing)> = None;
         let mut crossings = 0;
-        while let Some(Reverse(entry)) = self.room.heap.peek().copied() {
-            if entry.t != t {
-                break;
-            }
-            self.room.heap.pop();
-            let (leaf, i) = (entry.leaf, entry.leaf as usize);
-            match entry.event {
-                Event::Open => {
-                    self.room.state.set(self.tree, i, Truth::Open);
-                    self.room.open.push(leaf);
+        while let Some(Event { met, what, .. }) = self.room.queue.pop_at(t) {
+            let m = &mut self.room.met[met as usize];
+            let leaf = m.leaf as usize;
+            match what {
+                What::Open => {
+                    self.room.open.push(met);
+                    self.room.state.set(tree, leaf, Truth::Open);
                 }
-                Event::Far => {
-                    // A leaf that was asked ends at its own crossing.
-                    let open = self.room.open.len();
-                    self.room.open.retain(|l| *l != leaf);
-                    if self.room.open.len() < open {
-                        self.room.state.set(self.tree, i, Truth::No);
-                    }
-                }
-                Event::Cross(crossing) => {
-                    self.room.state.set(self.tree, i, Truth::known(crossing.entering));
+                What::Cross => {
+                    let crossing = self.room.pool[m.next as usize];
+                    m.next += 1;
+                    self.room.state.set(tree, leaf, Truth::known(crossing.entering));
+                    self.schedule(met as usize);
                     crossings += 1;
-                    let key = |l: u32| self.tree.leaves()[l as usize].key();
-                    if best.is_none_or(|(l, _)| key(leaf) < key(l)) {
-                        best = Some((leaf, crossing));
+                    let key = |met: u32| self.key(met);
+                    if best.is_none_or(|(other, _)| key(met) < key(other)) {
+                        best = Some((met, crossing));
                     }
                 }
             }
@@ -205,78 +149,141 @@ impl<'a> Sweep<'a> {
         (best, tied)
     }
 
+    /// Who owns what of two leaves; the earlier in the object where they are alike.
+    fn key(&self, met: u32) -> ((bool, bool, u64), u32) {
+        let leaf = self.room.met[met as usize].leaf;
+        (self.core.tree.leaves()[leaf as usize].key(), leaf)
+    }
+
+    /// Puts what a leaf does next into the queue: its next crossing, or the end of its answer.
+    fn schedule(&mut self, met: usize) {
+        let m = &self.room.met[met];
+        let (t, what) = if m.next < m.crossings[1] {
+            (self.room.pool[m.next as usize].t, What::Cross)
+        } else if m.answered.hi < m.range.hi.min(self.range.hi) {
+            (m.answered.hi, What::Open)
+        } else {
+            return;
+        };
+        self.room.queue.push(Event { t, met: met as u32, what });
+    }
+
     /// Asks leaves until the object's truth just after `at` is known; returns the last crossing up to there.
     fn resolve(&mut self) -> Option<(u32, Crossing)> {
         let mut last = None;
-        while self.room.state.root(self.tree) == Truth::Open {
-            let (tree, state) = (self.tree, &self.room.state);
-            let cost = |l: &&u32| (tree.leaves()[**l as usize].solid.is_costly(), **l);
-            let useful = self.room.open.iter().filter(|l| state.matters(tree, **l as usize));
-            let Some(&leaf) = useful.min_by_key(cost) else { break };
-            last = self.ask(leaf).map(|c| (leaf, c)).or(last);
+        while self.room.state.root() == Truth::Open {
+            let (tree, room) = (&self.core.tree, &*self.room);
+            let leaf = |at: usize| room.met[room.open[at] as usize].leaf as usize;
+            let useful = (0..room.open.len()).filter(|at| room.state.matters(tree, leaf(*at)));
+            let Some(at) = useful.min_by_key(|at| (self.core.costly[leaf(*at)], leaf(*at))) else { break };
+            let met = self.room.open.swap_remove(at);
+            last = self.ask(met as usize).map(|c| (met, c)).or(last);
         }
         last
     }
 
     /// Asks an open leaf from `at` on; returns its last crossing up to there, if it was asked for one.
-    fn ask(&mut self, leaf: u32) -> Option<Crossing> {
-        let met = self.room.met.iter().find(|m| m.0 == leaf);
-        let end = met.map_or(self.range.hi, |m| m.1.hi);
-        let answer = self.query(leaf, Interval::new(self.at, end));
+    fn ask(&mut self, met: usize) -> Option<Crossing> {
+        let tree = &self.core.tree;
+        let Met { leaf, range, answered, .. } = self.room.met[met];
+        let end = range.hi.min(self.range.hi);
+        if end < self.at {
+            // The ray has left its box.
+            self.room.state.set(tree, leaf as usize, Truth::No);
+            return None;
+        }
+        if answered.is_empty() {
+            self.room.asked += 1;
+        }
+        let answer = self.query(met, Interval::new(self.at, end));
+        self.room.keep(met, answer, self.range.hi);
         let (mut inside, mut last) = (answer.inside, None);
-        let fresh = std::mem::take(&mut self.room.fresh);
-        for crossing in &fresh {
-            if crossing.t <= self.at {
-                (inside, last) = (crossing.entering, Some(*crossing));
-            } else if crossing.t <= answer.range.hi.min(self.range.hi) {
-                self.room.push(crossing.t, leaf, Event::Cross(*crossing));
-            }
+        let m = &mut self.room.met[met];
+        while m.next < m.crossings[1] && self.room.pool[m.next as usize].t <= self.at {
+            last = Some(self.room.pool[m.next as usize]);
+            inside = self.room.pool[m.next as usize].entering;
+            m.next += 1;
         }
-        self.room.fresh = fresh;
-        if answer.range.hi < end {
-            self.room.push(answer.range.hi, leaf, Event::Open);
-        }
-        self.room.open.retain(|l| *l != leaf);
-        self.room.state.set(self.tree, leaf as usize, Truth::known(inside));
+        self.schedule(met);
+        self.room.state.set(tree, leaf as usize, Truth::known(inside));
         last
     }
 
     /// A leaf's crossings in a range, into `room.fresh`.
-    pub fn query(&mut self, leaf: u32, range: Interval) -> Answer {
+    pub fn query(&mut self, met: usize, range: Interval) -> Answer {
         self.scratch.counts.leaf_queries += 1;
-        if !self.room.asked.contains(&leaf) {
-            self.room.asked.push(leaf);
-        }
-        let leaf = &self.tree.leaves()[leaf as usize];
-        let ray = leaf.place.ray_to_local(self.ray);
+        let local = self.local(met);
+        let leaf = &self.core.tree.leaves()[self.room.met[met].leaf as usize];
         self.room.fresh.clear();
-        leaf.solid.crossings(&ray, range, self.scratch, &mut self.room.fresh)
+        leaf.solid.crossings(&local, range, self.scratch, &mut self.room.fresh)
     }
 
-    /// The state just after `t` of all leaves that the ray meets in its range.
-    pub fn state_at(&mut self, t: f64) -> State {
-        let mut state = self.outside.clone();
-        for i in 0..self.room.met.len() {
-            let leaf = self.room.met[i].0;
-            let answer = self.query(leaf, Interval::new(t, t));
-            let last = self.room.fresh.iter().rfind(|c| c.t <= t);
-            let inside = last.map_or(answer.inside, |c| c.entering);
-            state.set(self.tree, leaf as usize, Truth::known(inside));
+    /// The ray in the frame of a leaf.
+    fn local(&mut self, met: usize) -> Ray {
+        let m = &mut self.room.met[met];
+        let place = &self.core.tree.leaves()[m.leaf as usize].place;
+        *m.local.get_or_insert_with(|| place.ray_to_local(self.ray))
+    }
+
+    /// The state just after `t` of all leaves that the ray meets there, in one of the room's spare states.
+    fn state_at(&mut self, t: f64, which: fn(&mut Room) -> &mut State) {
+        self.meet(t);
+        let tree = &self.core.tree;
+        let mut state = std::mem::take(which(self.room));
+        state.reset(tree);
+        for met in 0..self.room.met.len() {
+            if self.room.met[met].range.contains(t) && self.holds(met, t) {
+                state.set(tree, self.room.met[met].leaf as usize, Truth::Yes);
+            }
         }
-        state
+        *which(self.room) = state;
+    }
+
+    /// Whether a leaf is inside just after `t`.
+    fn holds(&mut self, met: usize, t: f64) -> bool {
+        let m = &self.room.met[met];
+        let inside = if m.covers(Interval::new(t, t)) {
+            let last = self.room.crossings(met).iter().rfind(|c| c.t <= t);
+            return last.map_or(m.inside, |c| c.entering);
+        } else {
+            self.query(met, Interval::new(t, t)).inside
+        };
+        self.room.fresh.iter().rfind(|c| c.t <= t).map_or(inside, |c| c.entering)
+    }
+
+    /// Puts the state of all leaves just after `t` into `room.here`.
+    pub fn fill(&mut self, t: f64) {
+        self.state_at(t, |room| &mut room.here);
+    }
+
+    /// Whether a leaf makes the object's truth change from `t[0]` to `t[1]`, both included: it changes, and so does every
+    /// node from one of its uses up. A leaf cut away here has no part in the face, even where its own runs along.
+    pub fn makes(&mut self, met: usize, t: [f64; 2]) -> bool {
+        self.state_at(t[0].next_down(), |room| &mut room.before);
+        self.state_at(t[1], |room| &mut room.here);
+        let leaf = self.room.met[met].leaf as usize;
+        self.room.here.differs(&self.room.before, &self.core.tree, leaf)
     }
 
     /// The outward unit normal of a leaf, world frame.
-    pub fn leaf_normal(&mut self, leaf: u32, crossing: &Crossing) -> DVec3 {
-        let leaf = &self.tree.leaves()[leaf as usize];
-        let ray = leaf.place.ray_to_local(self.ray);
-        leaf.place.normal_to_world(leaf.solid.normal(&ray, crossing, self.scratch))
+    pub fn leaf_normal(&mut self, met: u32, crossing: &Crossing) -> DVec3 {
+        let local = self.local(met as usize);
+        let leaf = &self.core.tree.leaves()[self.room.met[met as usize].leaf as usize];
+        leaf.place.normal_to_world(leaf.solid.normal(&local, crossing, self.scratch))
     }
+}
+
+/// A leaf comes in sight.
+#[inline]
+fn show(met: &mut Vec<Met>, queue: &mut super::queue::Queue, range: Interval, leaf: u32, inside: Interval) {
+    queue.push(Event { t: inside.lo.max(range.lo), met: met.len() as u32, what: What::Open });
+    met.push(Met::new(leaf, inside));
 }
 
 impl Drop for Sweep<'_> {
     fn drop(&mut self) {
-        let skipped = self.room.met.len().saturating_sub(self.room.asked.len());
-        self.scratch.counts.leaves_skipped += skipped as u64;
+        self.room.state.reset(&self.core.tree);
+        let skipped = self.room.met.len() as u64 - u64::from(self.room.asked);
+        self.scratch.counts.leaves_skipped += skipped;
     }
 }

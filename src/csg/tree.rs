@@ -1,80 +1,15 @@
-//! The expression that combines leaves, as counters can follow it: n-ary unions, intersections and exclusions over
-//! leaves, complements pushed down to the leaves (De Morgan), chains of one operator flattened.
+//! The expression as counters can follow it: n-ary unions, intersections and exclusions over leaves, complements
+//! pushed down to the leaves (De Morgan), chains of one operator flattened, what is shared standing once.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::geom::{Aabb, Interval, Placement, Ray, tolerance};
-use crate::solid::Solid;
-
-/// A solid, placed, as an operand.
-#[derive(Clone, Debug)]
-pub struct Leaf {
-    /// The solid in its own frame.
-    pub solid: Arc<dyn Solid>,
-    /// Where it stands.
-    pub place: Placement,
-    /// A world box around its boundary; unbounded where the solid is.
-    pub bounds: Aabb,
-    /// Its name, as the scene calls it.
-    pub name: Arc<str>,
-    /// Its own material, an index that CSG does not interpret.
-    pub material: Option<u32>,
-    /// Whether it is taken away from something: its faces are cuts.
-    pub cutter: bool,
-    /// The source position of the call that made it: earlier calls own shared faces.
-    pub rank: u64,
-}
-
-impl Leaf {
-    /// Places a solid; name, material, cutter and rank are set by the caller.
-    pub fn new(solid: Arc<dyn Solid>, place: Placement) -> Leaf {
-        let bounds = solid.bounds().transformed(&place.world_from_local);
-        Leaf { solid, place, bounds, name: "".into(), material: None, cutter: false, rank: 0 }
-    }
-
-    /// The largest length of the leaf that enters its rounding errors: its size and its distance from the world's
-    /// origin.
-    pub fn scale(&self) -> f64 {
-        let reach = if self.bounds.is_finite() && !self.bounds.is_empty() {
-            self.bounds.min.abs().max(self.bounds.max.abs()).max_element()
-        } else {
-            0.0
-        };
-        reach.max(self.place.offset())
-    }
-
-    /// The part of a ray's line that can meet the leaf. Box and crossings are rounded apart, each by as much as two
-    /// faces that were one; so the box is grown by what the clean-up takes for nothing, and more where the frame
-    /// is skewed.
-    pub fn met(&self, ray: &Ray) -> Interval {
-        let scale = self.scale().max(ray.origin.length());
-        self.bounds.inflated(tolerance::cleanup(scale) * self.place.condition).clip(ray)
-    }
-
-    /// Who owns a face that several leaves share: the smallest key.
-    pub fn key(&self) -> (bool, bool, u64) {
-        (self.material.is_none(), self.cutter, self.rank)
-    }
-}
-
-/// A set expression over leaves.
-#[derive(Clone, Debug)]
-pub enum Expr {
-    /// A leaf, by its index.
-    Leaf(u32),
-    /// Points not in it.
-    Not(Box<Expr>),
-    /// Points in any; nothing where there are none.
-    Or(Vec<Expr>),
-    /// Points in all; must not be empty.
-    And(Vec<Expr>),
-    /// Points in an odd number.
-    Xor(Vec<Expr>),
-}
+use super::expr::Expr;
+use super::leaf::Leaf;
 
 /// How a node combines its children.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Kind {
+pub(super) enum Kind {
     /// True where any child is.
     Or,
     /// True where all children are.
@@ -83,10 +18,10 @@ pub enum Kind {
     Xor,
 }
 
-/// The link from a child to the node above it.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+/// The link from a child to a node above it.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(super) struct Up {
-    /// The node above; 0 is the root.
+    /// The node above.
     pub node: u32,
     /// Whether the child counts where it is false.
     pub negated: bool,
@@ -97,17 +32,44 @@ pub(super) struct Up {
 pub(super) struct Node {
     pub kind: Kind,
     pub arity: u32,
-    pub up: Option<Up>,
 }
 
-/// An object: leaves and the expression over them.
+/// For each of many things a short list, all in one array.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Lists<T> {
+    starts: Vec<u32>,
+    items: Vec<T>,
+}
+
+impl<T: Clone> Lists<T> {
+    /// Of `count` things; each item says which it belongs to, in any order; within one thing the order stays.
+    fn new(count: usize, mut items: Vec<(u32, T)>) -> Lists<T> {
+        items.sort_by_key(|i| i.0);
+        let mut starts = vec![0; count + 1];
+        items.iter().for_each(|i| starts[i.0 as usize + 1] += 1);
+        for i in 0..count {
+            starts[i + 1] += starts[i];
+        }
+        Lists { starts, items: items.into_iter().map(|i| i.1).collect() }
+    }
+
+    /// The list of a thing.
+    pub fn of(&self, i: usize) -> &[T] {
+        &self.items[self.starts[i] as usize..self.starts[i + 1] as usize]
+    }
+}
+
+/// An object's leaves and the expression over them.
 #[derive(Clone, Debug)]
 pub struct Tree {
-    leaves: Vec<Leaf>,
+    leaves: Arc<[Leaf]>,
+    /// Children before those above them; the root is the last.
     pub(super) nodes: Vec<Node>,
+    /// For each node the nodes it counts in.
+    pub(super) node_ups: Lists<Up>,
     /// For each leaf the nodes it counts in.
-    pub(super) ups: Vec<Vec<Up>>,
-    /// For each leaf, whether it is negated on its way to the root; `None` where an exclusion or several uses
+    pub(super) leaf_ups: Lists<Up>,
+    /// For each leaf, whether it is negated on its way to the root; `None` where an exclusion or uses of both kinds
     /// leave that open.
     pub(super) negated: Vec<Option<bool>>,
 }
@@ -121,48 +83,196 @@ impl Default for Tree {
 impl Tree {
     /// Builds the counters of an expression. The root is always a node.
     pub fn new(leaves: Vec<Leaf>, expr: &Expr) -> Tree {
-        let ups = vec![Vec::new(); leaves.len()];
-        let negated = vec![None; leaves.len()];
-        let mut tree = Tree { leaves, nodes: Vec::new(), ups, negated };
-        tree.nodes.push(Node { kind: Kind::Or, arity: 0, up: None });
-        let mut used = vec![0u32; tree.leaves.len()];
-        // A child still to be placed: its expression, whether it is complemented, the node above, and whether the
-        // way up has a sense.
-        let mut open: Vec<(&Expr, bool, u32, bool)> = vec![(expr, false, 0, true)];
-        while let Some((expr, not, above, sense)) = open.pop() {
-            match expr {
-                Expr::Leaf(i) => {
-                    let i = *i as usize;
-                    tree.ups[i].push(Up { node: above, negated: not });
-                    tree.nodes[above as usize].arity += 1;
-                    used[i] += 1;
-                    tree.negated[i] = (used[i] == 1 && sense).then_some(not);
-                }
-                Expr::Not(inner) => open.push((inner, !not, above, sense)),
-                Expr::Or(list) | Expr::And(list) | Expr::Xor(list) => {
-                    let (kind, inner_not, up_not) = match expr {
-                        Expr::Xor(_) => (Kind::Xor, false, not),
-                        Expr::Or(_) => (if not { Kind::And } else { Kind::Or }, not, false),
-                        _ => (if not { Kind::Or } else { Kind::And }, not, false),
-                    };
-                    let merge = tree.nodes[above as usize].kind == kind && !up_not;
-                    let node = if merge { above } else { tree.child(kind, above, up_not) };
-                    let sense = sense && kind != Kind::Xor;
-                    open.extend(list.iter().rev().map(|e| (e, inner_not, node, sense)));
+        let draft = Draft::new(expr);
+        let order = draft.order();
+        let mut place = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(i, n)| place[*n as usize] = i as u32);
+        let (mut node_ups, mut leaf_ups) = (Vec::new(), Vec::new());
+        for (i, node) in order.iter().enumerate() {
+            for (child, negated) in &draft.nodes[*node as usize].children {
+                let up = Up { node: i as u32, negated: *negated };
+                match child {
+                    Child::Leaf(leaf) => leaf_ups.push((*leaf, up)),
+                    Child::Node(node) => node_ups.push((place[*node as usize], up)),
                 }
             }
         }
+        let node = |n: &u32| {
+            let node = &draft.nodes[*n as usize];
+            Node { kind: node.kind, arity: node.children.len() as u32 }
+        };
+        let nodes: Vec<Node> = order.iter().map(node).collect();
+        let mut tree = Tree {
+            node_ups: Lists::new(nodes.len(), node_ups),
+            leaf_ups: Lists::new(leaves.len(), leaf_ups),
+            negated: Vec::new(),
+            nodes,
+            leaves: leaves.into(),
+        };
+        tree.negated = tree.senses();
         tree
-    }
-
-    fn child(&mut self, kind: Kind, above: u32, negated: bool) -> u32 {
-        self.nodes[above as usize].arity += 1;
-        self.nodes.push(Node { kind, arity: 0, up: Some(Up { node: above, negated }) });
-        self.nodes.len() as u32 - 1
     }
 
     /// The leaves.
     pub fn leaves(&self) -> &[Leaf] {
         &self.leaves
+    }
+
+    /// For each leaf whether it is negated on its way up.
+    fn senses(&self) -> Vec<Option<bool>> {
+        // Which senses some way up has: plain, negated, or neither can be told.
+        let mut of_nodes = vec![Senses::default(); self.nodes.len()];
+        let through = |of_nodes: &[Senses], ups: &[Up]| {
+            let way = |up: &Up| match self.nodes[up.node as usize].kind {
+                Kind::Xor => Senses { unclear: true, ..Senses::default() },
+                _ => of_nodes[up.node as usize].turned(up.negated),
+            };
+            ups.iter().map(way).fold(Senses::default(), Senses::or)
+        };
+        if let Some(root) = of_nodes.last_mut() {
+            root.plain = true;
+        }
+        for i in (0..self.nodes.len().saturating_sub(1)).rev() {
+            of_nodes[i] = through(&of_nodes, self.node_ups.of(i));
+        }
+        (0..self.leaves.len()).map(|i| through(&of_nodes, self.leaf_ups.of(i)).clear()).collect()
+    }
+}
+
+#[derive(Clone, Copy, Default)]
+struct Senses {
+    plain: bool,
+    negated: bool,
+    unclear: bool,
+}
+
+impl Senses {
+    fn turned(self, negated: bool) -> Senses {
+        if negated { Senses { plain: self.negated, negated: self.plain, ..self } } else { self }
+    }
+
+    fn or(self, o: Senses) -> Senses {
+        Senses {
+            plain: self.plain || o.plain,
+            negated: self.negated || o.negated,
+            unclear: self.unclear || o.unclear,
+        }
+    }
+
+    fn clear(self) -> Option<bool> {
+        (!self.unclear && self.plain != self.negated).then_some(self.negated)
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+enum Child {
+    Leaf(u32),
+    Node(u32),
+}
+
+struct Sketch {
+    kind: Kind,
+    children: Vec<(Child, bool)>,
+}
+
+/// Nodes with lists of their children; the root is the first.
+struct Draft<'e> {
+    nodes: Vec<Sketch>,
+    /// What is shared: its node and whether that is its complement.
+    shared: HashMap<*const Expr, (u32, bool)>,
+    /// Children still to be placed: the expression, whether it is complemented, the node above.
+    open: Vec<(&'e Expr, bool, u32)>,
+}
+
+impl<'e> Draft<'e> {
+    fn new(expr: &'e Expr) -> Draft<'e> {
+        let root = Sketch { kind: Kind::Or, children: Vec::new() };
+        let mut draft = Draft { nodes: vec![root], shared: HashMap::new(), open: vec![(expr, false, 0)] };
+        while let Some((expr, not, above)) = draft.open.pop() {
+            draft.place(expr, not, above);
+        }
+        // A child that stands twice in a union or an intersection counts once.
+        for node in draft.nodes.iter_mut().filter(|n| n.kind != Kind::Xor) {
+            node.children.sort_unstable();
+            node.children.dedup();
+        }
+        draft
+    }
+
+    fn place(&mut self, expr: &'e Expr, not: bool, above: u32) {
+        match expr {
+            Expr::Leaf(i) => self.nodes[above as usize].children.push((Child::Leaf(*i), not)),
+            Expr::Not(inner) => self.open.push((inner, !not, above)),
+            Expr::Shared(inner) if 1 < Arc::strong_count(inner) => self.place_shared(inner, not, above),
+            Expr::Shared(inner) => self.open.push((inner, not, above)),
+            Expr::Or(list) | Expr::And(list) | Expr::Xor(list) => {
+                let (kind, inner_not, up_not) = match expr {
+                    Expr::Xor(_) => (Kind::Xor, false, not),
+                    Expr::Or(_) => (if not { Kind::And } else { Kind::Or }, not, false),
+                    _ => (if not { Kind::Or } else { Kind::And }, not, false),
+                };
+                let merge = self.nodes[above as usize].kind == kind && !up_not;
+                let node = if merge { above } else { self.child(kind, above, up_not) };
+                self.open.extend(list.iter().rev().map(|e| (e, inner_not, node)));
+            }
+        }
+    }
+
+    /// What is shared has a node of its own, in the sense in which it is written.
+    fn place_shared(&mut self, shared: &'e Expr, not: bool, above: u32) {
+        if let Some((node, turned)) = self.shared.get(&std::ptr::from_ref(shared)) {
+            self.nodes[above as usize].children.push((Child::Node(*node), not != *turned));
+            return;
+        }
+        let (mut expr, mut turned) = (shared, false);
+        loop {
+            match expr {
+                Expr::Not(inner) => (expr, turned) = (&**inner, !turned),
+                Expr::Shared(inner) => expr = &**inner,
+                _ => break,
+            }
+        }
+        let (kind, list) = match expr {
+            Expr::Or(list) => (Kind::Or, list),
+            Expr::And(list) => (Kind::And, list),
+            Expr::Xor(list) => (Kind::Xor, list),
+            // A leaf stands once anyway.
+            other => return self.open.push((other, not != turned, above)),
+        };
+        let node = self.child(kind, above, not != turned);
+        self.shared.insert(shared, (node, turned));
+        self.open.extend(list.iter().rev().map(|e| (e, false, node)));
+    }
+
+    fn child(&mut self, kind: Kind, above: u32, negated: bool) -> u32 {
+        self.nodes.push(Sketch { kind, children: Vec::new() });
+        let node = self.nodes.len() as u32 - 1;
+        self.nodes[above as usize].children.push((Child::Node(node), negated));
+        node
+    }
+
+    /// All nodes, children first.
+    fn order(&self) -> Vec<u32> {
+        let mut order = Vec::with_capacity(self.nodes.len());
+        let mut known = vec![false; self.nodes.len()];
+        // A node and how many of its children have been looked at.
+        let mut open = vec![(0u32, 0usize)];
+        known[0] = true;
+        while let Some((node, next)) = open.pop() {
+            let children = &self.nodes[node as usize].children;
+            let inner = |c: &(Child, bool)| matches!(c.0, Child::Node(_));
+            match children[next..].iter().position(inner) {
+                None => order.push(node),
+                Some(skip) => {
+                    open.push((node, next + skip + 1));
+                    if let Child::Node(child) = children[next + skip].0
+                        && !std::mem::replace(&mut known[child as usize], true)
+                    {
+                        open.push((child, 0));
+                    }
+                }
+            }
+        }
+        order
     }
 }

@@ -1,11 +1,12 @@
 //! Three-valued truth of a tree by counters: each leaf is out, in, or not asked yet; each node knows how many of its
-//! children are true and how many unknown, so one change costs the depth, not the number of leaves.
+//! children are true and how many unknown. One change costs the nodes that change with it, and going back to the
+//! outside costs what was changed, however many leaves there are.
 
 use super::tree::{Kind, Tree, Up};
 
 /// Out, in, or not known yet.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum Truth {
+pub(super) enum Truth {
     /// Outside.
     #[default]
     No,
@@ -30,10 +31,14 @@ impl Truth {
     }
 }
 
+/// What is known of a node.
 #[derive(Clone, Copy, Debug, Default)]
 struct Count {
     yes: u32,
     open: u32,
+    value: Truth,
+    /// Whether it waits to be looked at again.
+    queued: bool,
 }
 
 /// The state of every leaf and node.
@@ -41,6 +46,10 @@ struct Count {
 pub(super) struct State {
     leaves: Vec<Truth>,
     counts: Vec<Count>,
+    /// Leaves set since the outside.
+    touched: Vec<u32>,
+    /// Nodes whose children changed, the lowest last.
+    waiting: Vec<u32>,
 }
 
 impl State {
@@ -49,32 +58,36 @@ impl State {
         let mut state = State {
             leaves: vec![Truth::No; tree.leaves().len()],
             counts: vec![Count::default(); tree.nodes.len()],
+            ..State::default()
         };
-        for up in tree.ups.iter().flatten() {
-            state.counts[up.node as usize].yes += u32::from(up.negated);
+        for leaf in 0..tree.leaves().len() {
+            for up in tree.leaf_ups.of(leaf) {
+                state.counts[up.node as usize].yes += u32::from(up.negated);
+            }
         }
-        // Nodes come after those above them, so children are counted before they are asked.
-        for i in (1..tree.nodes.len()).rev() {
-            if let Some(up) = tree.nodes[i].up {
-                let value = state.node(tree, i).negated(up.negated);
-                state.counts[up.node as usize].yes += u32::from(value == Truth::Yes);
+        for i in 0..tree.nodes.len() {
+            let value = state.evaluated(tree, i);
+            state.counts[i].value = value;
+            for up in tree.node_ups.of(i) {
+                state.counts[up.node as usize].yes += u32::from(value.negated(up.negated) == Truth::Yes);
             }
         }
         state
     }
 
-    /// Takes another state over, without allocating where there is room.
-    pub fn copy_from(&mut self, other: &State) {
-        self.leaves.clone_from(&other.leaves);
-        self.counts.clone_from(&other.counts);
+    /// Every leaf outside again.
+    pub fn reset(&mut self, tree: &Tree) {
+        while let Some(leaf) = self.touched.pop() {
+            self.put(tree, leaf as usize, Truth::No);
+        }
     }
 
-    pub fn root(&self, tree: &Tree) -> Truth {
-        self.node(tree, 0)
+    pub fn root(&self) -> Truth {
+        self.counts.last().map_or(Truth::No, |c| c.value)
     }
 
-    fn node(&self, tree: &Tree, i: usize) -> Truth {
-        let Count { yes, open } = self.counts[i];
+    fn evaluated(&self, tree: &Tree, i: usize) -> Truth {
+        let Count { yes, open, .. } = self.counts[i];
         let node = &tree.nodes[i];
         match node.kind {
             Kind::Or if 0 < yes => Truth::Yes,
@@ -86,64 +99,91 @@ impl State {
         }
     }
 
-    /// Whether knowing an open leaf can tell the root: every node on a way up is open.
-    pub fn matters(&self, tree: &Tree, leaf: usize) -> bool {
-        tree.ups[leaf].iter().any(|up| {
-            let mut node = up.node as usize;
-            loop {
-                if self.node(tree, node) != Truth::Open {
-                    return false;
-                }
-                match tree.nodes[node].up {
-                    Some(up) => node = up.node as usize,
-                    None => return true,
-                }
-            }
-        })
-    }
-
-    /// Whether a leaf, and all nodes above one of its uses, pass the test; nothing may be open.
-    fn all_above(&self, tree: &Tree, leaf: usize, test: impl Fn(&dyn Fn(&State) -> Truth) -> bool) -> bool {
-        let passes = |mut node: usize| {
-            loop {
-                if !test(&|state| state.node(tree, node)) {
-                    return false;
-                }
-                match tree.nodes[node].up {
-                    Some(up) => node = up.node as usize,
-                    None => return true,
-                }
-            }
+    /// Whether some way from these nodes up to the root passes the test all along.
+    fn climbs(&self, tree: &Tree, ups: &[Up], test: impl Fn(usize) -> bool) -> bool {
+        let root = tree.nodes.len() - 1;
+        let mut node = match ups {
+            [one] => one.node as usize,
+            _ => return self.climbs_somewhere(tree, ups, test),
         };
-        test(&|state| state.leaves[leaf]) && tree.ups[leaf].iter().any(|up| passes(up.node as usize))
-    }
-
-    /// Whether a leaf and all nodes above one of its uses are inside.
-    pub fn fills(&self, tree: &Tree, leaf: usize) -> bool {
-        self.all_above(tree, leaf, |truth| truth(self) == Truth::Yes)
-    }
-
-    /// Whether a leaf and all nodes above one of its uses differ from another state.
-    pub fn differs(&self, before: &State, tree: &Tree, leaf: usize) -> bool {
-        self.all_above(tree, leaf, |truth| truth(self) != truth(before))
-    }
-
-    /// Sets a leaf.
-    pub fn set(&mut self, tree: &Tree, leaf: usize, truth: Truth) {
-        let before = std::mem::replace(&mut self.leaves[leaf], truth);
-        if before != truth {
-            for up in &tree.ups[leaf] {
-                self.replace(tree, *up, before, truth);
+        loop {
+            if !test(node) {
+                return false;
+            }
+            if node == root {
+                return true;
+            }
+            match tree.node_ups.of(node) {
+                [one] => node = one.node as usize,
+                several => return self.climbs_somewhere(tree, several, test),
             }
         }
     }
 
-    /// Counts a child's change in the node above it, and on upwards while nodes change.
-    fn replace(&mut self, tree: &Tree, mut up: Up, mut before: Truth, mut after: Truth) {
-        loop {
-            let node = up.node as usize;
-            let was = self.node(tree, node);
-            let count = &mut self.counts[node];
+    /// The same where ways part: every node is tried once.
+    fn climbs_somewhere(&self, tree: &Tree, ups: &[Up], test: impl Fn(usize) -> bool) -> bool {
+        let root = tree.nodes.len() - 1;
+        let mut open: Vec<u32> = ups.iter().map(|up| up.node).collect();
+        let mut tried = std::collections::HashSet::new();
+        while let Some(node) = open.pop() {
+            if !tried.insert(node) || !test(node as usize) {
+                continue;
+            }
+            if node as usize == root {
+                return true;
+            }
+            open.extend(tree.node_ups.of(node as usize).iter().map(|up| up.node));
+        }
+        false
+    }
+
+    /// Whether knowing an open leaf can tell the root: every node on a way up is open.
+    pub fn matters(&self, tree: &Tree, leaf: usize) -> bool {
+        self.climbs(tree, tree.leaf_ups.of(leaf), |node| self.counts[node].value == Truth::Open)
+    }
+
+    /// Whether a leaf and all nodes above one of its uses are inside; nothing may be open.
+    pub fn fills(&self, tree: &Tree, leaf: usize) -> bool {
+        self.leaves[leaf] == Truth::Yes
+            && self.climbs(tree, tree.leaf_ups.of(leaf), |node| self.counts[node].value == Truth::Yes)
+    }
+
+    /// Whether a leaf and all nodes above one of its uses differ from another state; nothing may be open.
+    pub fn differs(&self, before: &State, tree: &Tree, leaf: usize) -> bool {
+        let node = |node: usize| self.counts[node].value != before.counts[node].value;
+        self.leaves[leaf] != before.leaves[leaf] && self.climbs(tree, tree.leaf_ups.of(leaf), node)
+    }
+
+    /// Sets a leaf.
+    pub fn set(&mut self, tree: &Tree, leaf: usize, truth: Truth) {
+        if self.leaves[leaf] == Truth::No && truth != Truth::No {
+            self.touched.push(leaf as u32);
+        }
+        self.put(tree, leaf, truth);
+    }
+
+    fn put(&mut self, tree: &Tree, leaf: usize, truth: Truth) {
+        let before = std::mem::replace(&mut self.leaves[leaf], truth);
+        if before == truth {
+            return;
+        }
+        self.count(tree.leaf_ups.of(leaf), before, truth);
+        // Children before those above them, so that a node is looked at once, however many ways lead to it.
+        while let Some(node) = self.waiting.pop() {
+            let i = node as usize;
+            let is = self.evaluated(tree, i);
+            let was = std::mem::replace(&mut self.counts[i].value, is);
+            self.counts[i].queued = false;
+            if is != was {
+                self.count(tree.node_ups.of(i), was, is);
+            }
+        }
+    }
+
+    /// Counts a child's change in the nodes above it.
+    fn count(&mut self, ups: &[Up], before: Truth, after: Truth) {
+        for up in ups {
+            let count = &mut self.counts[up.node as usize];
             match before.negated(up.negated) {
                 Truth::Yes => count.yes -= 1,
                 Truth::Open => count.open -= 1,
@@ -154,10 +194,9 @@ impl State {
                 Truth::Open => count.open += 1,
                 Truth::No => {}
             }
-            let is = self.node(tree, node);
-            match tree.nodes[node].up {
-                Some(above) if was != is => (up, before, after) = (above, was, is),
-                _ => return,
+            if !std::mem::replace(&mut count.queued, true) {
+                let at = self.waiting.partition_point(|n| up.node < *n);
+                self.waiting.insert(at, up.node);
             }
         }
     }

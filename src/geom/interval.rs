@@ -9,6 +9,12 @@ pub struct Interval {
     pub hi: f64,
 }
 
+impl Default for Interval {
+    fn default() -> Interval {
+        Interval::EMPTY
+    }
+}
+
 impl Interval {
     /// The whole line.
     pub const ALL: Interval = Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY };

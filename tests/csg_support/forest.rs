@@ -115,6 +115,7 @@ pub fn permuted(draws: &mut Draws, expr: &Expr) -> Expr {
         Expr::And(list) => Expr::And(again(list)),
         Expr::Xor(list) => Expr::Xor(again(list)),
         Expr::Not(inner) => Expr::Not(Box::new(permuted(draws, inner))),
+        Expr::Shared(inner) => Expr::Shared(Arc::new(permuted(draws, inner))),
     }
 }
 
@@ -135,5 +136,6 @@ pub fn bracketed(draws: &mut Draws, expr: &Expr) -> Expr {
         Expr::And(list) => again(list, Expr::And),
         Expr::Xor(list) => again(list, Expr::Xor),
         Expr::Not(inner) => Expr::Not(Box::new(bracketed(draws, inner))),
+        Expr::Shared(inner) => Expr::Shared(Arc::new(bracketed(draws, inner))),
     }
 }

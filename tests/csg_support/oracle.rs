@@ -63,6 +63,7 @@ impl<'a> Oracle<'a> {
             Expr::Or(list) => list.iter().any(|e| self.truth(e, t)),
             Expr::And(list) => list.iter().all(|e| self.truth(e, t)),
             Expr::Xor(list) => list.iter().filter(|e| self.truth(e, t)).count() % 2 == 1,
+            Expr::Shared(inner) => self.truth(inner, t),
         }
     }
 
@@ -177,6 +178,7 @@ impl<'a> Oracle<'a> {
         let (node, list) = match expr {
             Expr::Leaf(i) => return *i == leaf && self.differs(expr, ts),
             Expr::Not(inner) => return self.changes_in(inner, !not, above, leaf, ts),
+            Expr::Shared(inner) => return self.changes_in(inner, not, above, leaf, ts),
             Expr::Or(list) => (if not { Node::And } else { Node::Or }, list),
             Expr::And(list) => (if not { Node::Or } else { Node::And }, list),
             Expr::Xor(list) => (Node::Xor, list),
@@ -203,20 +205,22 @@ impl<'a> Oracle<'a> {
     }
 }
 
-/// Whether a leaf is complemented on its way to the root: `None` if that is open.
+/// Whether a leaf is complemented on its way to the root: `None` if that is open, or not the same for all its uses.
 fn sense(expr: &Expr, leaf: u32) -> Option<bool> {
     fn uses(expr: &Expr, leaf: u32, not: bool, clear: bool, out: &mut Vec<Option<bool>>) {
         match expr {
             Expr::Leaf(i) if *i == leaf => out.push(clear.then_some(not)),
             Expr::Leaf(_) => {}
             Expr::Not(inner) => uses(inner, leaf, !not, clear, out),
+            Expr::Shared(inner) => uses(inner, leaf, not, clear, out),
             Expr::Xor(list) => list.iter().for_each(|e| uses(e, leaf, not, false, out)),
             Expr::Or(list) | Expr::And(list) => list.iter().for_each(|e| uses(e, leaf, not, clear, out)),
         }
     }
     let mut out = Vec::new();
     uses(expr, leaf, false, true, &mut out);
-    if out.len() == 1 { out[0] } else { None }
+    let first = out.first().copied().flatten();
+    if out.iter().all(|sense| *sense == first) { first } else { None }
 }
 
 fn track(leaf: &Leaf, ray: &Ray) -> Track {

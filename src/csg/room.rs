@@ -1,0 +1,94 @@
+//! Room for sweeps, lent by a thread: what a ray meets, what leaves have answered, what is inside.
+
+use super::hierarchy::Walk;
+use super::queue::Queue;
+use super::truth::State;
+use crate::geom::{Interval, Ray};
+use crate::solid::{Answer, Crossing};
+
+/// A leaf whose box the ray meets, and what it has answered.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Met {
+    pub leaf: u32,
+    /// Where the ray is inside its box; not cut to the range.
+    pub range: Interval,
+    /// The ray in its frame, once it was asked.
+    pub local: Option<Ray>,
+    /// The range of its last answer in the sweep; empty before.
+    pub answered: Interval,
+    /// Whether the ray is inside where that begins.
+    pub inside: bool,
+    /// Its crossings in [`Room::pool`].
+    pub crossings: [u32; 2],
+    /// The next of them.
+    pub next: u32,
+}
+
+impl Met {
+    pub fn new(leaf: u32, range: Interval) -> Met {
+        Met { leaf, range, local: None, answered: Interval::EMPTY, inside: false, crossings: [0; 2], next: 0 }
+    }
+
+    /// Whether its last answer in the sweep tells everything about a stretch of the ray.
+    pub fn covers(&self, about: Interval) -> bool {
+        self.answered.lo < about.lo && about.hi <= self.answered.hi
+    }
+}
+
+/// Room for sweeps of one tree at a time.
+#[derive(Debug, Default)]
+pub(super) struct Room {
+    /// The tree it has been made for.
+    pub tree: Option<u64>,
+    pub state: State,
+    /// For asking about one place, beside the sweep's own state.
+    pub here: State,
+    /// And about a place before.
+    pub before: State,
+    pub met: Vec<Met>,
+    /// Of those, whose state is open now.
+    pub open: Vec<u32>,
+    pub walk: Walk,
+    pub queue: Queue,
+    /// Crossings that leaves have answered in the sweep.
+    pub pool: Vec<Crossing>,
+    /// Of those met, how many were asked.
+    pub asked: u32,
+    /// The last answer outside the sweep.
+    pub fresh: Vec<Crossing>,
+}
+
+impl Room {
+    /// Gets ready for a tree.
+    pub fn enter(&mut self, tree: u64, outside: &State) {
+        if self.tree != Some(tree) {
+            self.tree = Some(tree);
+            self.state.clone_from(outside);
+            self.here.clone_from(outside);
+            self.before.clone_from(outside);
+        }
+        self.met.clear();
+        self.open.clear();
+        self.queue.clear();
+        self.pool.clear();
+        self.asked = 0;
+    }
+
+    /// Keeps an answer of the sweep; crossings past its end are left out, and come again.
+    pub fn keep(&mut self, met: usize, answer: Answer, end: f64) {
+        let first = self.pool.len() as u32;
+        let last = answer.range.hi.min(end);
+        self.pool.extend(self.fresh.iter().filter(|c| c.t <= last));
+        let met = &mut self.met[met];
+        met.crossings = [first, self.pool.len() as u32];
+        met.next = first;
+        met.inside = answer.inside;
+        met.answered = Interval::new(answer.range.lo, last);
+    }
+
+    /// A leaf's crossings in its last answer.
+    pub fn crossings(&self, met: usize) -> &[Crossing] {
+        let [first, end] = self.met[met].crossings;
+        &self.pool[first as usize..end as usize]
+    }
+}
