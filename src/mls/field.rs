@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::gradient::{Answers, gradient};
 use super::levin;
 use super::neighbours::Neighbours;
-use super::plane::{Jet, Plane, settle, start};
+use super::plane::{Jet, Plane, Straightness, settle, start};
 use super::polynomial::fit;
 use super::{AnyWay, Facing, MAX_DEGREE, Weight};
 
@@ -121,20 +121,27 @@ impl<W: Weight, A: Facing> Evaluator<W, A> {
     /// beyond, the answer is [`Stray::OutOfReach`].
     pub fn sample(&self, near: &Neighbours, at: DVec3, guess: &Guess) -> Result<Sample, Stray> {
         if A::VARIES && ALIGNED <= near.least {
-            // All normals lie within 60 degrees of one direction: where the plane's is within 24 of it too, every
-            // factor of facing is exactly one, and need not be computed.
+            // All normals lie within 60 degrees of one direction: while the plane's stays within 24 of it too, from the
+            // start of the search to its end, every factor of facing is exactly one, and need not be computed. Where it
+            // leaves, the whole search is made again, so that its end does not depend on what was gathered.
             let Evaluator { weight, degree, form, .. } = *self;
             let plain = Evaluator { weight, facing: AnyWay, degree, form };
-            let answer = plain.search(near, at, guess);
-            let straight = |s: &Sample| STRAIGHT <= s.plane_normal.dot(near.outward);
-            if answer.as_ref().is_ok_and(straight) || answer == Err(Stray::OutOfReach) {
+            let mut straight = 1.0;
+            let answer = plain.search(near, at, guess, &mut straight);
+            if STRAIGHT <= straight || answer == Err(Stray::OutOfReach) {
                 return answer;
             }
         }
-        self.search(near, at, guess)
+        self.search(near, at, guess, &mut 1.0)
     }
 
-    fn search(&self, near: &Neighbours, at: DVec3, guess: &Guess) -> Result<Sample, Stray> {
+    fn search(
+        &self,
+        near: &Neighbours,
+        at: DVec3,
+        guess: &Guess,
+        straight: &mut Straightness,
+    ) -> Result<Sample, Stray> {
         let Guess { foot, outward, width } = *guess;
         let local = |p: DVec3| (p - near.origin) / near.unit;
         let (r, foot) = (local(at), local(foot));
@@ -142,10 +149,11 @@ impl<W: Weight, A: Facing> Evaluator<W, A> {
         if near.reach < foot.length() {
             return Err(Stray::OutOfReach);
         }
-        let begin = start(self.weight, self.facing, near, r, foot, outward)?;
-        let (mut plane, jet) = settle(self.weight, self.facing, near, r, begin)?;
+        let begin = start(self.weight, self.facing, near, r, foot, outward, straight)?;
+        let (mut plane, jet) = settle(self.weight, self.facing, near, r, k, begin, straight)?;
         if self.form == Form::Levin {
             plane = levin::settle(self.weight, self.facing, near, r, &plane)?;
+            *straight = straight.min(-plane.n.dot(near.outward));
         }
         if TUBE * k < plane.t.abs() {
             return Err(Stray::Outside);

@@ -62,8 +62,11 @@ const MAX_STEPS: usize = 24;
 /// A step below this many local units (radians) leaves an error of its square in F, below rounding, and of this size in
 /// the Hessian that the gradient of F is made with.
 const LAST_STEP: f64 = 1e-7;
-/// The largest single step, radians and local units: the quadratic model is good for no more.
+/// The largest single step, radians and widths at the point: the quadratic model is good for no more.
 const LONGEST_STEP: f64 = 0.5;
+
+/// How near a search stayed to the outward normal that its neighbours were gathered with: the least cosine.
+pub(super) type Straightness = f64;
 
 /// The weight that decides which side r belongs to is so much narrower, as a factor on squared distances: its support
 /// still holds the whole trust sphere's radius.
@@ -74,6 +77,8 @@ const CLEAR: f64 = 0.2;
 /// Where the search starts: the plane through the weighted centroid of the samples about the foot that face like the
 /// surface next to r, across their mean normal. Which way that is a narrower weight about r itself decides, so that the
 /// nearer side of a thin wall wins and at its rim both sides together; where normals cancel, `outward` decides.
+///
+/// `straight` is lowered to the cosine of the direction that samples were compared with.
 pub(super) fn start<W: Weight, A: Facing>(
     weight: W,
     _: A,
@@ -81,6 +86,7 @@ pub(super) fn start<W: Weight, A: Facing>(
     r: DVec3,
     foot: DVec3,
     outward: DVec3,
+    straight: &mut Straightness,
 ) -> Result<Plane, Stray> {
     let (sum, centroid, normal) =
         dispatch!(Level::new(), simd => means::<_, W, AnyWay>(simd, weight, near, r, NARROW, outward));
@@ -90,6 +96,7 @@ pub(super) fn start<W: Weight, A: Facing>(
     } else {
         (foot, outward)
     };
+    *straight = straight.min(outward.dot(near.outward));
     let (sum, centroid, normal) =
         dispatch!(Level::new(), simd => means::<_, W, A>(simd, weight, near, foot, 1.0, outward));
     // Below this share of one full sample nothing is near: the foot lies outside every support.
@@ -241,16 +248,19 @@ fn jet_in<S: Simd, W: Weight, A: Facing>(
 }
 
 /// Newton's step, made a descent step where the Hessian is not positive definite by taking the absolute values of
-/// its eigenvalues.
-fn step(jet: &Jet) -> [f64; 3] {
-    let g = jet.gradient.map(|x| -x);
+/// its eigenvalues. Lengths are measured in the width `k` at the point, so that the walk, and with it the minimum that it
+/// ends in, does not depend on the unit that the neighbours were gathered in.
+fn step(jet: &Jet, k: f64) -> [f64; 3] {
+    let [g0, g1, gt] = jet.gradient;
+    let g = [-g0, -g1, -k * gt];
+    let [a, b, c] = jet.hessian;
+    let hessian = [[a[0], a[1], k * a[2]], [b[0], b[1], k * b[2]], [k * c[0], k * c[1], k * k * c[2]]];
     // A pivot this far below its diagonal has no correct digit left.
     const PIVOT: f64 = 1e-12;
-    let y = match Cholesky::new(&jet.hessian, 3, PIVOT) {
+    let y = match Cholesky::new(&hessian, 3, PIVOT) {
         Some(factor) => factor.solve(&g),
         None => {
-            let h = &jet.hessian;
-            let (values, v) = symmetric3(DMat3::from_cols_array_2d(h));
+            let (values, v) = symmetric3(DMat3::from_cols_array_2d(&hessian));
             let largest = values[0].abs().max(values[2].abs());
             let g = DVec3::from_array(g);
             let scaled = |i: usize, axis: DVec3| {
@@ -260,7 +270,8 @@ fn step(jet: &Jet) -> [f64; 3] {
         }
     };
     let longest = (y[0] * y[0] + y[1] * y[1]).sqrt().max(y[2].abs());
-    if longest <= LONGEST_STEP { y } else { y.map(|x| x * (LONGEST_STEP / longest)) }
+    let by = if longest <= LONGEST_STEP { 1.0 } else { LONGEST_STEP / longest };
+    [by * y[0], by * y[1], by * k * y[2]]
 }
 
 fn moved(plane: &Plane, jet: &Jet, y: [f64; 3], by: f64) -> Plane {
@@ -271,6 +282,8 @@ fn moved(plane: &Plane, jet: &Jet, y: [f64; 3], by: f64) -> Plane {
 /// Walks from a start to the local minimum. The jet returned is that of the last step's beginning, at most
 /// `LAST_STEP` away from the plane returned.
 ///
+/// `k` is the width at the point, local units; `straight` is lowered to the least cosine of the normals passed.
+///
 /// Fails with [`Stray::Unsettled`] where the search does not end, and with [`Stray::Sparse`] where it leaves the
 /// samples behind (the energy falls to nothing at infinity: the spurious minimum of the un-normalised problem).
 pub(super) fn settle<W: Weight, A: Facing>(
@@ -278,26 +291,33 @@ pub(super) fn settle<W: Weight, A: Facing>(
     facing: A,
     near: &Neighbours,
     r: DVec3,
+    k: f64,
     start: Plane,
+    straight: &mut Straightness,
 ) -> Result<(Plane, Jet), Stray> {
     let mut plane = start;
+    let mut pass = |plane: &Plane| *straight = straight.min(-plane.n.dot(near.outward));
+    pass(&plane);
     let mut here = jet(weight, facing, near, r, &plane);
     for _ in 0..MAX_STEPS {
         if here.weight <= 0.0 {
             return Err(Stray::Sparse);
         }
-        let y = step(&here);
+        let y = step(&here, k);
         let size = (y[0] * y[0] + y[1] * y[1]).sqrt().max(y[2].abs());
         if size.is_nan() {
             return Err(Stray::IllConditioned);
         }
         if size <= LAST_STEP {
-            return Ok((moved(&plane, &here, y, 1.0), here));
+            plane = moved(&plane, &here, y, 1.0);
+            pass(&plane);
+            return Ok((plane, here));
         }
         let mut by = 1.0;
         let mut halvings = 0;
         loop {
             let next = moved(&plane, &here, y, by);
+            pass(&next);
             let there = jet(weight, facing, near, r, &next);
             // Rounding of a sum of that many terms of this size must not refuse a step.
             let slack = 1e-12 * here.energy.abs() + 1e-28 * here.weight;

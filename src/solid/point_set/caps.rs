@@ -80,7 +80,7 @@ impl PointSet {
             }
             out.iter_mut().for_each(|cap| cap.repair = true);
         }
-        mend(gap, ends, out);
+        mend(gap, ends, || 0.0 <= self.level(line, 0.5 * (gap.lo + gap.hi)).value, out);
     }
 
     /// Appends every place of a stretch where the winding number passes one half.
@@ -167,10 +167,18 @@ fn merged(stretches: impl Iterator<Item = Interval>) -> Vec<Interval> {
     out
 }
 
-/// Makes the states alternate from one end of the gap to the other: a crossing that contradicts the state before it
-/// is preceded by a wall at the gap's own end, the last by one at the other end.
-fn mend(gap: Interval, [before, after]: [bool; 2], caps: &mut Vec<Cap>) {
+/// Makes the states alternate from one end of the gap to the other. Between its ends the winding number decides, at its
+/// ends F does: where they disagree a wall stands, at that end, whichever way the line runs. `between` tells the state
+/// in the middle of a finite gap; it is asked only where no crossing tells.
+fn mend(gap: Interval, [before, after]: [bool; 2], between: impl FnOnce() -> bool, caps: &mut Vec<Cap>) {
     let wall = |s: f64, entering: bool| Cap { s, err: 0.0, entering, repair: true };
+    if caps.is_empty() && before != after {
+        // Past the samples there is no inside.
+        let inside = gap.lo.is_finite() && gap.hi.is_finite() && between();
+        let near = if gap.lo.is_finite() && gap.hi.is_finite() { inside != before } else { gap.lo.is_finite() };
+        caps.push(wall(if near { gap.lo } else { gap.hi }, after));
+        return;
+    }
     let mut state = before;
     let mut out = Vec::with_capacity(caps.len() + 2);
     for cap in caps.iter() {
@@ -186,10 +194,8 @@ fn mend(gap: Interval, [before, after]: [bool; 2], caps: &mut Vec<Cap>) {
     if state != after {
         if gap.hi.is_finite() {
             out.push(wall(gap.hi, after));
-        } else if out.last().is_some_and(|c| c.entering) {
-            out.pop(); // An entry from which nothing comes out again.
         } else {
-            out.push(wall(gap.lo, after));
+            out.pop(); // An entry from which nothing comes out again.
         }
     }
     *caps = out;
@@ -203,17 +209,20 @@ mod tests {
         Cap { s, err: 0.0, entering, repair: false }
     }
 
-    #[test]
-    fn states_alternate_after_mending() {
-        let cases: [(Interval, [bool; 2], Vec<Cap>); 5] = [
+    fn cases() -> [(Interval, [bool; 2], Vec<Cap>); 5] {
+        [
             (Interval::new(0.0, 1.0), [true, false], vec![]),
             (Interval::new(0.0, 1.0), [false, false], vec![cap(0.5, false)]),
             (Interval::new(f64::NEG_INFINITY, 1.0), [false, true], vec![cap(0.5, true)]),
             (Interval::new(0.0, f64::INFINITY), [true, false], vec![]),
             (Interval::new(0.0, f64::INFINITY), [false, false], vec![cap(0.2, true)]),
-        ];
-        for (gap, ends, mut caps) in cases {
-            mend(gap, ends, &mut caps);
+        ]
+    }
+
+    #[test]
+    fn states_alternate_after_mending() {
+        for (gap, ends, mut caps) in cases() {
+            mend(gap, ends, || true, &mut caps);
             let mut state = ends[0];
             for c in &caps {
                 assert_ne!(c.entering, state);
@@ -221,6 +230,21 @@ mod tests {
                 state = c.entering;
             }
             assert_eq!(state, ends[1], "{gap:?}");
+        }
+    }
+
+    #[test]
+    fn a_line_and_its_reverse_are_mended_alike() {
+        for (gap, ends, caps) in cases() {
+            for inside in [false, true] {
+                let mut forth = caps.clone();
+                mend(gap, ends, || inside, &mut forth);
+                let turn = |c: &Cap| Cap { s: 0.0 - c.s, entering: !c.entering, ..*c };
+                let mut back: Vec<Cap> = caps.iter().rev().map(turn).collect();
+                mend(Interval::new(-gap.hi, -gap.lo), [ends[1], ends[0]], || inside, &mut back);
+                let back: Vec<Cap> = back.iter().rev().map(turn).collect();
+                assert_eq!(forth, back, "{gap:?} {ends:?}");
+            }
         }
     }
 }
