@@ -12,7 +12,7 @@ use pss::cloud::winding::Winding;
 use pss::cloud::{Cloud, SampleOptions, Samples, ply};
 use pss::geom::Ray;
 use pss::solid::point_set::{Options, PointSet};
-use pss::solid::{Body, Counts, Scratch, Solid};
+use pss::solid::{Body, Counts, Crossing, Scratch, Solid};
 use rayon::prelude::*;
 
 fn surface(samples: &Samples) -> PointSet {
@@ -85,6 +85,9 @@ fn an_open_surface_is_a_sheet_and_a_closed_one_a_solid() {
     }
 }
 
+/// All real scans, those that take least time first.
+const SCANS: [&str; 8] = ["bunny", "igea", "dragon", "cactus", "lion", "pump", "bunny_raw", "happy_raw"];
+
 /// A real scan, if it is there.
 fn scan(name: &str) -> Option<Samples> {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/scans").join(name);
@@ -97,12 +100,86 @@ fn scan(name: &str) -> Option<Samples> {
 
 #[test]
 fn real_scans_are_what_they_are_known_for() {
-    for (name, body) in [("igea.ply", Body::Solid), ("bunny.ply", Body::Sheet)] {
+    let all = [
+        ("igea.ply", Body::Solid),
+        ("bunny.ply", Body::Sheet),
+        ("cactus.ply", Body::Sheet),
+        ("dragon.ply", Body::Solid),
+        ("lion.ply", Body::Sheet),
+        ("pump.ply", Body::Sheet),
+        ("bunny_raw.ply", Body::Sheet),
+        ("happy_raw.ply", Body::Sheet),
+    ];
+    let long = std::env::var_os("PSS_LONG").is_some();
+    for (name, body) in &all[..if long { all.len() } else { 4 }] {
         let Some(samples) = scan(name) else { continue };
         let measured = surface(&samples).measure();
         let share = 100.0 * measured.odd_share();
         println!("{name}: {} of {} chords odd ({share:.2} %)", measured.odd, measured.chords);
-        assert_eq!(measured.body(), body, "{name}");
+        assert_eq!(measured.body(), *body, "{name}");
+    }
+}
+
+/// How many ends of lines through a surface lie elsewhere for the line and its reverse, beyond 1e-9 of the diagonal and
+/// their own bounds; and how many ends there are.
+fn ends_that_differ(set: &PointSet, samples: &Samples, chords: u64) -> [usize; 2] {
+    let bounds = samples.bounds();
+    let one = |scratch: &mut Scratch, i: u64| {
+        let ray = chord(i, bounds.center(), 0.5 * bounds.diagonal());
+        let forth = all(set, &ray, scratch);
+        let back = all(set, &Ray::new(ray.at(1.0), -ray.dir), scratch);
+        if forth.len() != back.len() {
+            println!("chord {i}: {forth:?} and in reverse {back:?}");
+            return [1, forth.len().max(back.len())];
+        }
+        let off = |(a, b): (&Crossing, &Crossing)| {
+            let apart = (a.t + b.t - 1.0).abs() * ray.dir.length();
+            let bound = 1e-9 * bounds.diagonal() + (a.err + b.err) * ray.dir.length();
+            let other = bound < apart || a.entering == b.entering;
+            if other {
+                println!("chord {i}: {a:?} and in reverse {b:?}");
+            }
+            usize::from(other)
+        };
+        [forth.iter().zip(back.iter().rev()).map(off).sum(), forth.len()]
+    };
+    let found: Vec<[usize; 2]> = (0..chords).into_par_iter().map_init(Scratch::default, one).collect();
+    found.iter().fold([0; 2], |sum, f| [sum[0] + f[0], sum[1] + f[1]])
+}
+
+/// A ball whose inside was seen in part through its opening: walls of both kinds beside what was never seen.
+fn half_seen_bowl(n: usize) -> Samples {
+    let (points, normals) = Truth::Sphere.cloud(n);
+    let outer = points.iter().zip(&normals).filter(|(p, _)| p.z < 0.6).map(|(p, n)| (*p, *n));
+    let seen = |p: &DVec3| p.z < 0.6 && 0.0 < p.x + 0.5 * (9.0 * p.y).sin() * (7.0 * p.z).cos();
+    let inner = points.iter().zip(&normals).filter(|(p, _)| seen(p)).map(|(p, n)| (0.8 * *p, -*n));
+    let (points, normals) = outer.chain(inner).unzip();
+    let cloud = Cloud { points, normals: Some(normals), ..Cloud::default() };
+    Samples::new(cloud, &SampleOptions::default()).unwrap()
+}
+
+/// `PSS_LONG=1` tries every scan, 10,000 chords each.
+#[test]
+fn a_line_and_its_reverse_meet_a_closed_scan_at_the_same_places() {
+    let long = std::env::var_os("PSS_LONG").is_some();
+    let chords = if long { 10_000 } else { 2000 };
+    let all = ["bunny", "igea", "dragon", "cactus", "lion", "pump", "bunny_raw", "happy_raw"];
+    let real =
+        all[..if long { all.len() } else { 2 }].iter().filter_map(|n| Some((*n, scan(&format!("{n}.ply"))?)));
+    let made = [("ball", open_ball(6000)), ("half-seen bowl", half_seen_bowl(12_000))];
+    for (name, samples) in made.into_iter().chain(real) {
+        let keep = bounding(&samples, &samples.winding(Winding::OPENING));
+        let samples = samples.selected(&keep);
+        let [off, ends] = ends_that_differ(&closed(&samples), &samples, chords);
+        println!("{name}: {off} of {ends} ends differ from those of the reverse");
+        // Where noise and clutter leave F undefined in shreds, which of them a line meets depends on where it is asked: one
+        // end in a hundred on the worst scans, none on clean ones.
+        let allowed = match SCANS.iter().position(|s| *s == name) {
+            None => 0.0,
+            Some(0..4) => 0.002,
+            Some(_) => 0.01,
+        };
+        assert!(off as f64 <= allowed * ends as f64, "{name}: {off} of {ends}");
     }
 }
 
@@ -126,8 +203,7 @@ fn odd(set: &PointSet, samples: &Samples, chords: u64) -> (u64, Counts) {
 #[test]
 fn lines_through_a_closed_scan_alternate() {
     let long = std::env::var_os("PSS_LONG").is_some();
-    let all = ["bunny", "igea", "dragon", "cactus", "lion", "pump", "bunny_raw", "happy_raw"];
-    for name in &all[..if long { all.len() } else { 2 }] {
+    for name in &SCANS[..if long { SCANS.len() } else { 2 }] {
         let Some(samples) = scan(&format!("{name}.ply")) else { continue };
         let chords = if long { 10_000 } else { 2000 };
         let keep = bounding(&samples, &samples.winding(Winding::OPENING));

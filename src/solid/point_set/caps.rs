@@ -175,7 +175,8 @@ fn mend(gap: Interval, [before, after]: [bool; 2], between: impl FnOnce() -> boo
     if caps.is_empty() && before != after {
         // Past the samples there is no inside.
         let inside = gap.lo.is_finite() && gap.hi.is_finite() && between();
-        let near = if gap.lo.is_finite() && gap.hi.is_finite() { inside != before } else { gap.lo.is_finite() };
+        let near =
+            if gap.lo.is_finite() && gap.hi.is_finite() { inside != before } else { gap.lo.is_finite() };
         caps.push(wall(if near { gap.lo } else { gap.hi }, after));
         return;
     }

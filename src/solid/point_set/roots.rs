@@ -137,6 +137,10 @@ impl Search<'_> {
     fn close(&mut self, open: &mut Option<(f64, bool, usize)>, at: &Probe, f: [f64; 2]) {
         if let Some((lo, inside, first)) = open.take() {
             self.drop_flaps(first);
+            // A domain no longer than its ends are uncertain, in which nothing happens, is a chance of where F was asked.
+            if at.s - lo < DOMAIN * at.width && first == self.out.roots.len() {
+                return;
+            }
             self.out.pieces.push(Piece {
                 range: Interval::new(lo, at.s),
                 inside: [inside, f[0] < 0.0],
@@ -169,19 +173,21 @@ impl Search<'_> {
         }
     }
 
-    /// Drops pairs of crossings, one of them a jump, that lie nearer to each other than the jump is certain.
+    /// Drops pairs of crossings, one of them a jump, that lie nearer to each other than the jump is certain: the nearest
+    /// pair first, so that a line and its reverse drop the same.
     fn drop_flaps(&mut self, first: usize) {
         let roots = &mut self.out.roots;
-        let mut i = first;
-        while i + 1 < roots.len() {
-            let (a, b) = (&roots[i], &roots[i + 1]);
-            let loose = if a.jump { a.err } else { 0.0 }.max(if b.jump { b.err } else { 0.0 });
-            if b.s - a.s < loose {
-                roots.drain(i..i + 2);
-                i = i.saturating_sub(1).max(first);
-            } else {
-                i += 1;
-            }
+        loop {
+            let gap = |i: &usize| {
+                let (a, b) = (&roots[*i], &roots[i + 1]);
+                let loose = if a.jump { a.err } else { 0.0 }.max(if b.jump { b.err } else { 0.0 });
+                let gap = b.s - a.s;
+                (gap < loose).then_some(gap)
+            };
+            let pairs = first..roots.len().saturating_sub(1).max(first);
+            let flap = pairs.filter_map(|i| Some((i, gap(&i)?))).min_by(|a, b| a.1.total_cmp(&b.1));
+            let Some((i, _)) = flap else { return };
+            roots.drain(i..i + 2);
         }
     }
 
