@@ -124,27 +124,55 @@ fn f15_outliers_about_a_ball_are_dropped() {
     }
 }
 
+/// A cloud that went through a PLY of doubles.
+fn through_file(points: Vec<DVec3>, encoding: ply::Encoding) -> Cloud {
+    let mut bytes = Vec::new();
+    ply::write(&Cloud { points, ..Cloud::default() }, encoding, &mut bytes).unwrap();
+    assert!(String::from_utf8_lossy(&bytes).contains("property double x"));
+    ply::read(&bytes).unwrap()
+}
+
 #[test]
-fn f23_a_cloud_ten_million_away_in_doubles_equals_its_twin_at_the_origin() {
+fn f23_a_far_cloud_in_a_file_of_doubles_equals_its_twin_at_the_origin() {
     let (points, _) = Truth::Torus.cloud(4000);
-    let offset = DVec3::new(1e7, -0.7e7, 0.3e7);
-    // The twin gets the same rounding of coordinates.
-    let far: Vec<DVec3> = points.iter().map(|p| *p + offset).collect();
-    let near: Vec<DVec3> = far.iter().map(|p| *p - offset).collect();
-    let set = |s: Samples| PointSet::new(&s.points, &s.normals, &s.widths, &Options::default());
-    let (a, b) = (set(samples(near)), set(samples(far)));
-    let mut scratch = Scratch::default();
-    for i in 0..500 {
-        let Ray { origin, dir, .. } = chord(i, DVec3::ZERO, 1.4);
-        let there = Ray::new(origin + offset, dir);
-        let here = Ray::new(there.origin - offset, dir);
-        let (p, q) = (all(&a, &here, &mut scratch), all(&b, &there, &mut scratch));
-        assert_eq!(p.len(), q.len());
-        for (p, q) in p.iter().zip(&q) {
-            // Along the normal: a grazing line spreads it out.
-            let normal = a.normal(&here, p, &mut scratch);
-            let apart = (p.t - q.t).abs() * dir.dot(normal).abs();
-            assert!(apart <= 1e-8, "{apart:e}");
+    let far = [[1e7, 1e7, 1e7], [1e7, -0.7e7, 0.3e7], [1e9, 1e9, 1e9], [5e5, 5e6, 100.0]];
+    for (offset, encoding) in far.into_iter().zip([ply::Encoding::Binary, ply::Encoding::Text].repeat(2)) {
+        let offset = DVec3::from_array(offset);
+        // The twin gets the same rounding of coordinates.
+        let far: Vec<DVec3> = points.iter().map(|p| *p + offset).collect();
+        let near: Vec<DVec3> = far.iter().map(|p| *p - offset).collect();
+        let set = |cloud: Cloud| {
+            let s = Samples::new(cloud, &SampleOptions::default()).unwrap();
+            assert_eq!(s.len(), points.len(), "{offset}");
+            PointSet::new(&s.points, &s.normals, &s.widths, &Options::default())
+        };
+        let (a, b) = (set(Cloud { points: near, ..Cloud::default() }), set(through_file(far, encoding)));
+        let mut scratch = Scratch::default();
+        // A place on a ray is rounded so far from the origin: by 1.2e-7 at 1e9.
+        let allowed = 1e-8f64.max(4.0 * f64::EPSILON * offset.abs().max_element());
+        for i in 0..500 {
+            let Ray { origin, dir, .. } = chord(i, DVec3::ZERO, 1.4);
+            let there = Ray::new(origin + offset, dir);
+            let here = Ray::new(there.origin - offset, dir);
+            let (p, q) = (all(&a, &here, &mut scratch), all(&b, &there, &mut scratch));
+            assert_eq!(p.len(), q.len(), "{offset}");
+            for (p, q) in p.iter().zip(&q) {
+                // Along the normal: a grazing line spreads it out.
+                let normal = a.normal(&here, p, &mut scratch);
+                let apart = (p.t - q.t).abs() * dir.dot(normal).abs();
+                assert!(apart <= allowed, "{offset}: {apart:e}");
+            }
         }
     }
+}
+
+#[test]
+fn f22_floats_too_coarse_for_the_cloud_are_said_to_be_so() {
+    // A step is 1 at 1e7: nothing of a unit ball is left.
+    let (points, _) = Truth::Sphere.cloud(4000);
+    let round = |p: &DVec3| (*p + 1e7).to_array().map(|x| f64::from(x as f32));
+    let points = points.iter().map(|p| DVec3::from_array(round(p))).collect();
+    let error = Samples::new(Cloud { points, ..Cloud::default() }, &SampleOptions::default()).unwrap_err();
+    assert!(error.message.contains("apart"), "{}", error.message);
+    assert!(error.help.unwrap().contains("double"));
 }

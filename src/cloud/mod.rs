@@ -24,7 +24,7 @@ use glam::DVec3;
 pub use areas::{AREA_NEIGHBOURS, AREA_REACH, areas};
 pub use duplicates::merge_duplicates;
 pub use error::{CloudError, CloudFault};
-pub use extent::check_extent;
+pub use extent::{check_extent, coordinate_step, is_single};
 pub use samples::{NormalSource, SampleOptions, Samples};
 
 /// Points as a file gives them, in the file's own units.

@@ -4,13 +4,13 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::fitness::{self, Concern, Fitness};
+use super::fitness::{Concern, Fitness};
 use super::{ScanReport, complaint, files};
 use crate::cloud::holes::{Hole, holes};
 use crate::cloud::neighbours::Neighbours;
 use crate::cloud::scraps::bounding;
 use crate::cloud::winding::Winding;
-use crate::cloud::{Cloud, CloudError, CloudFault, NormalSource, SampleOptions, Samples, ply};
+use crate::cloud::{Cloud, CloudError, CloudFault, NormalSource, SampleOptions, Samples, is_single, ply};
 use crate::diag::{Diagnostic, Fault};
 use crate::scene::{Call, MaterialId, ShapeNode, Value};
 use crate::shot::Material;
@@ -144,7 +144,7 @@ impl<'a> Builder<'a> {
             },
             keep_strays: false,
         };
-        let single = fitness::is_single(&cloud);
+        let single = is_single(&cloud.points);
         let samples = Samples::new(cloud, &options).map_err(|e| cloud_complaint(call, "the cloud", e))?;
         let (made, tree) = (points::options(call), Neighbours::new(&samples.points));
         let concerns = Fitness::new(&samples, &tree, single, made.mixed).concerns();

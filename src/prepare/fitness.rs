@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
+use crate::cloud::Samples;
 use crate::cloud::neighbours::{Near, Neighbours};
-use crate::cloud::{Cloud, Samples};
 use crate::num::eigen::symmetric3;
 
 /// A wall thinner than so many widths is not told apart: no sample's side of it is certain.
@@ -46,13 +46,8 @@ pub(super) struct Concern {
     pub help: &'static str,
 }
 
-/// Whether all coordinates are those of single precision.
-pub(super) fn is_single(cloud: &Cloud) -> bool {
-    cloud.points.iter().flat_map(|p| p.to_array()).all(|x| f64::from(x as f32) == x)
-}
-
 impl Fitness {
-    /// Measures samples. `tree` is over their points; `single` as [`is_single`] says, `mixed` as
+    /// Measures samples. `tree` is over their points; `single` as [`is_single`](crate::cloud::is_single) says, `mixed` as
     /// [`Options`](crate::solid::point_set::Options).
     pub fn new(samples: &Samples, tree: &Neighbours, single: bool, mixed: bool) -> Fitness {
         let thinnest = if mixed { THINNEST_MIXED } else { THINNEST };

@@ -4,10 +4,10 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::build::try_holes;
-use super::fitness::{Fitness, asked, is_single};
+use super::fitness::{Fitness, asked};
 use crate::cloud::holes::holes;
 use crate::cloud::neighbours::{Near, Neighbours};
-use crate::cloud::{Cloud, CloudError, SampleOptions, Samples};
+use crate::cloud::{Cloud, CloudError, SampleOptions, Samples, is_single};
 use crate::solid::Body;
 use crate::solid::point_set::{Options, PointSet};
 
@@ -92,7 +92,7 @@ pub struct Survey {
 pub fn survey(cloud: Cloud) -> Result<Survey, CloudError> {
     let points = cloud.points.len();
     let normals = if cloud.normals.is_some() { "file" } else { "estimated" };
-    let single = is_single(&cloud);
+    let single = is_single(&cloud.points);
     let mut samples = Samples::new(cloud, &SampleOptions::default())?;
     let bounds = samples.bounds();
     let options = Options::default();
