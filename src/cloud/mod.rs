@@ -7,10 +7,12 @@ mod error;
 mod extent;
 mod groups;
 pub mod holes;
+mod loose;
 mod magic;
 pub mod neighbours;
 pub mod normals;
 mod order;
+mod peers;
 pub mod ply;
 mod samples;
 pub mod scraps;
@@ -36,6 +38,8 @@ pub struct Cloud {
     pub normals: Option<Vec<DVec3>>,
     /// Linear colours, one a point, components in 0..1.
     pub colors: Option<Vec<[f32; 3]>>,
+    /// Rows of the file that were no points, for a coordinate that is not finite.
+    pub dropped: u64,
     /// What was dropped or mended on the way, one sentence each.
     pub notes: Vec<String>,
 }
