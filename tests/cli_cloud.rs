@@ -2,8 +2,12 @@
 
 mod cli_common;
 
-use cli_common::{Folder, ply, ply_with_normals, sphere};
+use std::time::Instant;
+
+use cli_common::{Folder, ply, ply_of, ply_with_normals, sphere};
+use glam::DVec3;
 use pss::cloud::ply::read;
+use pss::num::hash::Stream;
 
 #[test]
 fn info_says_what_a_sphere_is_like() {
@@ -80,4 +84,54 @@ fn convert_adds_normals_and_drops_strays() {
     assert_eq!(cloud.points.len(), 2000);
     let normals = cloud.normals.unwrap();
     assert!(cloud.points.iter().zip(&normals).all(|(p, n)| 0.99 < n.dot(*p)));
+}
+
+/// What `cloud info` prints of a cloud.
+fn info(cloud: impl AsRef<[u8]>) -> String {
+    let folder = Folder::new();
+    folder.write("a.ply", cloud);
+    let ran = folder.run(&["cloud", "info", "a.ply"]);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    String::from_utf8(ran.stdout).unwrap()
+}
+
+#[test]
+fn normals_that_are_all_zero_are_said_to_be_estimated() {
+    let columns = ["x", "y", "z", "nx", "ny", "nz"].map(|name| format!("property float {name}\n")).concat();
+    let rows = sphere(1000, 1.0).into_iter().map(|p| format!("{} {} {} 0 0 0", p.x, p.y, p.z));
+    let text = info(ply_of(1000, &columns, rows));
+    assert!(text.contains("normals        estimated"), "{text}");
+}
+
+#[test]
+fn rows_that_are_no_points_are_rows_of_the_file_too() {
+    let mut points = sphere(1000, 1.0);
+    points[7] = DVec3::NAN;
+    points[70] = DVec3::INFINITY;
+    let text = info(ply(&points));
+    assert!(text.contains("1000 in the file, 998 samples"), "{text}");
+}
+
+#[test]
+fn lengths_of_a_tiny_cloud_have_digits() {
+    let tiny: Vec<DVec3> = sphere(1000, 1.0).iter().map(|p| 1e-30 * *p).collect();
+    let text = info(ply(&tiny));
+    let extent = text.lines().find(|l| l.contains("extent")).unwrap();
+    assert!(extent.contains("diagonal 3.46") && extent.contains("e-30"), "{extent}");
+}
+
+/// Strays once tied themselves to the surface in their midst and gave it weights as wide as the ball.
+#[test]
+fn a_dirty_cloud_of_ten_thousand_points_is_surveyed_in_ten_seconds() {
+    for (seed, count) in [(0, 10), (1, 100), (2, 500), (3, 100)] {
+        let mut stream = Stream::new(seed);
+        let strays = (0..count).map(|_| stream.direction() * (0.5 + stream.unit()));
+        let points: Vec<DVec3> = sphere(10_000, 1.0).into_iter().chain(strays).collect();
+        let start = Instant::now();
+        let text = info(ply(&points));
+        let time = start.elapsed().as_secs_f64();
+        println!("{count} strays: {time:.1} s");
+        assert!(time < 10.0, "{time:.1} s");
+        assert!(text.contains("a Solid: 0 of 10000"), "{text}");
+    }
 }

@@ -134,3 +134,22 @@ fn a_pixel_is_probed_through_its_centre() {
     let text = String::from_utf8(table.stdout).unwrap();
     assert!(text.starts_with("ray 0\n  enter t ") && text.contains("exit"), "{text}");
 }
+
+/// From five sizes away it is a ball like any other; from 5, 1e30 sizes away, both ends are one and the same `t`, and so
+/// there is no span.
+#[test]
+fn p15_a_cloud_of_1e_minus_30_has_its_spans() {
+    let folder = Folder::new();
+    let tiny: Vec<glam::DVec3> = cli_common::sphere(4000, 1.0).iter().map(|p| 1e-30 * *p).collect();
+    folder.write("a.ply", cli_common::ply(&tiny)).write("a.pss", "draw points(\"a.ply\")\n");
+    folder.write("rays.csv", "0,0,-5e-30,0,0,1e-30\n0,0,-5e-30,0,0,1\n0,0,-5,0,0,1\n");
+    let ran = folder.run(&["probe", "a.pss", "--rays", "rays.csv", "--json"]);
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    let lines = ran.json_lines();
+    for (line, unit) in lines.iter().zip([1.0, 1e-30]) {
+        let span = &line["spans"][0];
+        near(&span["enter"]["t"], &[4.0 * unit], 1e-4 * unit);
+        near(&span["exit"]["t"], &[6.0 * unit], 1e-4 * unit);
+    }
+    assert_eq!(lines[2]["spans"], json!([]));
+}

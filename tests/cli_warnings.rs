@@ -154,3 +154,26 @@ fn statistics_hold_what_was_done_to_each_scan() {
     assert_eq!(stats["scans"][0]["samples"], 4000);
     assert!(stats["scans"][0]["notes"].to_string().contains("stray"), "{stats}");
 }
+
+#[test]
+fn weights_that_hold_hundreds_of_samples_are_warned_of_and_those_that_hold_thousands_refused() {
+    let cloud = || ply_with_normals(&sphere(10_000, 1.0));
+    says(
+        &said_of("draw points(\"a.ply\", smoothing: 6)\n", cloud()),
+        &["warning[W0107]", "samples, where 12 are usual"],
+    );
+    assert_eq!(said_of("draw points(\"a.ply\", smoothing: 3)\n", cloud()), "");
+    for (argument, words) in [
+        ("h: 1", ["holds some 2", "0.0348 apart"]),
+        ("h: 5", ["more than the whole cloud", "0.0348 apart"]),
+        ("smoothing: 20", ["where 12 are usual", "0.0348 apart"]),
+        ("h: 0", ["`h` must be above zero", "write a number above zero"]),
+    ] {
+        let folder = Folder::new();
+        folder.write("a.pss", format!("draw points(\"a.ply\", {argument})\n")).write("a.ply", cloud());
+        let ran = folder.run(&["render", "a.pss", "-o", "a.png", "--size", "8x8", "--spp", "1"]);
+        assert_eq!(ran.code, 65, "{argument}: {}", ran.stderr);
+        says(&ran.stderr, &["a.pss:1:", words[0], words[1]]);
+        assert!(!ran.stderr.contains("warning"), "{}", ran.stderr);
+    }
+}

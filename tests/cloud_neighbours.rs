@@ -95,7 +95,7 @@ fn equal_points_become_one() {
     let normals = vec![DVec3::X, DVec3::Z, DVec3::Y, -DVec3::Z, DVec3::ZERO, DVec3::X];
     let points = vec![DVec3::ZERO, DVec3::ONE, DVec3::ZERO, DVec3::ONE, DVec3::X, DVec3::X];
     let colors = Some(vec![[1.0; 3], [0.5; 3], [0.0; 3], [0.5; 3], [0.25; 3], [0.75; 3]]);
-    let merged = merge_duplicates(Cloud { points, normals: Some(normals), colors, notes: vec![] });
+    let merged = merge_duplicates(Cloud { points, normals: Some(normals), colors, ..Cloud::default() });
     assert_eq!(merged.points, [DVec3::ZERO, DVec3::X, DVec3::ONE]);
     let between = (DVec3::X + DVec3::Y).normalize();
     assert_eq!(merged.normals.unwrap(), [between, DVec3::X, DVec3::ZERO]);

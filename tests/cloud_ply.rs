@@ -44,6 +44,10 @@ fn p1_p3_p4_p7_p10_p12_p13_p14_p15_every_bad_file_has_its_sentence() {
     let header = |text: &str| text.as_bytes().to_vec();
     let long_line = "1 ".repeat(40_000);
     let long_header = format!("ply\nformat ascii 1.0\n{}", "comment a\n".repeat(10_000));
+    let million =
+        format!("ply\nformat ascii 1.0\n{}{XYZ}end_header\n{FOUR}", "comment a\n".repeat(1_000_000));
+    // The head of a gzip file, and deflate's code for the longest run over and over: a thousand bytes out for each one in.
+    let bomb = [&b"\x1f\x8b\x08\0\0\0\0\0\0\x03"[..], &[0xec; 1 << 20]].concat();
     let too_large = format!("line 3: the count `{}` of `vertex` is too large", "9".repeat(33));
     let list_x = "property list uchar float x\nproperty float y\nproperty float z\n";
     let cases: Vec<(Vec<u8>, &str)> = vec![
@@ -65,6 +69,9 @@ fn p1_p3_p4_p7_p10_p12_p13_p14_p15_every_bad_file_has_its_sentence() {
             xyz("1152921504606846976", FOUR),
             "line 3: 1152921504606846976 points are more than the limit of 268435456",
         ),
+        // 2^35 and 2^40.
+        (xyz("34359738368", FOUR), "line 3: 34359738368 points are more than the limit of 268435456"),
+        (xyz("1099511627776", FOUR), "line 3: 1099511627776 points are more than the limit of 268435456"),
         (xyz("1000000", FOUR), "truncated: expected 1000000 points, got 4"),
         (xyz("5", "0.5 0 0\n1 0 0\n0 1 0.5\n0 0 1\n"), "truncated: expected 5 points, got 4"),
         (xyz("4", "0 0 0\n1 0 0\n0 one 0\n0 0 1\n"), "line 10: `one` is no number for `y`"),
@@ -78,6 +85,8 @@ fn p1_p3_p4_p7_p10_p12_p13_p14_p15_every_bad_file_has_its_sentence() {
             "line 9: this row has more values than its 3 properties",
         ),
         (xyz("4", &long_line), "line 8: a line is longer than 65536 bytes"),
+        (million.into_bytes(), "the header is longer than 65536 bytes"),
+        (bomb, "not a PLY file: it looks like a gzip file"),
         (long_header.into_bytes(), "the header is longer than 65536 bytes"),
         (ascii("4", "property float x\nproperty float y\n", FOUR), "line 3: `vertex` has no property `z`"),
         (ascii("4", list_x, FOUR), "line 4: property `x` is a list"),
@@ -303,35 +312,6 @@ fn p2_prefixes_are_refused_and_never_panic() {
 }
 
 #[test]
-fn p20_mutations_never_panic() {
-    let mut stream = Stream::new(11);
-    for bytes in small_files() {
-        for _ in 0..20_000 {
-            let mut bytes = bytes.clone();
-            let mut draw = |n: usize| (stream.unit() * n as f64) as usize;
-            for _ in 0..=draw(4) {
-                let at = draw(bytes.len());
-                match draw(4) {
-                    0 => bytes[at] = draw(256) as u8,
-                    1 => bytes[at] ^= 1 << draw(8),
-                    2 => drop(bytes.splice(at..(at + draw(40)).min(bytes.len()), std::iter::empty())),
-                    _ => {
-                        let from = draw(bytes.len());
-                        let piece = bytes[from..(from + draw(40)).min(bytes.len())].to_vec();
-                        bytes.splice(at..at, piece);
-                    }
-                }
-                if bytes.is_empty() {
-                    break;
-                }
-            }
-            let cloud = ply::read(&bytes).unwrap_or_default();
-            assert!(cloud.points.iter().all(|p| p.is_finite()) && cloud.points.len() < 1000);
-        }
-    }
-}
-
-#[test]
 fn only_regular_files_that_exist_are_opened() {
     let dir = tempfile::tempdir().unwrap();
     let error = ply::read_path(dir.path()).unwrap_err();
@@ -351,7 +331,7 @@ fn scans_are_read_whole() {
         [("bunny.ply", 34_834), ("lion.ply", 341_989), ("pump.ply", 155_201), ("dragon.ply", 437_645)]
     {
         let Some(path) = scan(name) else { return };
-        let Cloud { points: read, normals, colors, notes } = ply::read_path(&path).unwrap();
+        let Cloud { points: read, normals, colors, notes, .. } = ply::read_path(&path).unwrap();
         assert_eq!(read.len(), points);
         assert_eq!(normals.is_some(), name != "pump.ply");
         assert_eq!(colors.is_some(), name == "lion.ply" || name == "pump.ply");

@@ -36,8 +36,11 @@ fn edge(set: &PointSet, y: f64, scratch: &mut Scratch) -> f64 {
     (lo - 1.0) / h
 }
 
+/// Every sample stands for a cell of one spacing squared, so that n^2 of them cover n^2 cells: the samples end half a spacing
+/// beyond the last row, a sixth of these widths, and there the mean of the samples in the weight is as far away as that of a
+/// continuous half-plane from its rim. From the last row itself the edge lies within that sixth and a tenth.
 #[test]
-fn f6_the_edge_of_a_grid_lies_within_a_tenth_of_a_width() {
+fn f6_the_edge_of_a_grid_lies_within_a_tenth_of_a_width_of_where_its_cells_end() {
     let step = 0.01;
     let points: Vec<DVec3> =
         (0..101 * 101).map(|i| DVec3::new(f64::from(i % 101), f64::from(i / 101), 0.0) * step).collect();
@@ -45,11 +48,14 @@ fn f6_the_edge_of_a_grid_lies_within_a_tenth_of_a_width() {
     for gaussian in [false, true] {
         let set = PointSet::new(&points, &normals, &widths, &Options { gaussian, ..Options::default() });
         let mut scratch = Scratch::default();
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         for i in 0..40 {
-            // The cells of the last samples end half a spacing, a sixth of a width, beyond them.
-            let off = edge(&set, 0.2 + 0.6 * f64::from(i) / 40.0, &mut scratch) - 0.5 / 3.0;
-            assert!(off.abs() <= 0.1, "{off} widths beyond");
+            let beyond = edge(&set, 0.2 + 0.6 * f64::from(i) / 40.0, &mut scratch);
+            range = [range[0].min(beyond), range[1].max(beyond)];
         }
+        println!("gaussian {gaussian}: {:.3} to {:.3} widths beyond the last row", range[0], range[1]);
+        let cells = 0.5 / 3.0;
+        assert!(cells - 0.1 <= range[0] && range[1] <= cells + 0.1, "{range:?}");
         let ray = Ray::new(DVec3::new(0.503, 0.517, 1.0), DVec3::new(0.01, 0.02, -1.0));
         assert!((all(&set, &ray, &mut scratch)[0].t - 1.0).abs() < 1e-12);
     }

@@ -294,6 +294,8 @@ fn the_crossings_are_those_of_a_dense_scan() {
         }
     }
     println!("all: {whole:?}");
-    assert_eq!((whole.missed, whole.extra, whole.odd, whole.beyond), (0, 0, 0, 0));
+    assert_eq!((whole.missed, whole.extra, whole.odd, whole.beyond, whole.jumps), (0, 0, 0, 0, 0));
+    // Pairs of crossings that the scan steps over lie nearer to each other than h/50.
+    assert!(whole.finer * 1000 <= whole.crossings);
     assert!(whole.loose * 100_000 <= whole.crossings);
 }

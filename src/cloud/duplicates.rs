@@ -11,7 +11,7 @@ const CANCELLED: f64 = 0.1;
 /// Merges points of equal position: their normals are summed (missing where they cancel), their colours
 /// averaged. The points come back sorted by position, so that their order in the file is forgotten.
 pub fn merge_duplicates(cloud: Cloud) -> Cloud {
-    let Cloud { points, normals, colors, mut notes } = cloud;
+    let Cloud { points, normals, colors, dropped, mut notes } = cloud;
     let key = |i: u32| {
         let i = i as usize;
         let n = normals.as_ref().map_or(DVec3::ZERO, |n| n[i]).to_array();
@@ -31,6 +31,7 @@ pub fn merge_duplicates(cloud: Cloud) -> Cloud {
         points: Vec::with_capacity(points.len()),
         normals: normals.as_ref().map(|_| Vec::with_capacity(points.len())),
         colors: colors.as_ref().map(|_| Vec::with_capacity(points.len())),
+        dropped,
         notes: Vec::new(),
     };
     let mut cancelled = 0;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::CloudError;
-use crate::geom::Aabb;
+use crate::geom::{Aabb, tolerance};
 
 /// Clouds wider than this are refused: it is no length of this world (the observable universe has 1e27 m),
 /// and its square, cube and fourth power, which the plane fit needs, stay finite below it.
@@ -13,8 +13,17 @@ const WIDEST: f64 = 1e30;
 /// need 1e6 samples along its length for one across.
 const LINE: f64 = 1e-6;
 
-/// Rounding of coordinates stored as `f32`, relative to the coordinate (half of 2^-23, two of them).
-const SINGLE: f64 = 1.2e-7;
+/// Whether all coordinates are those of single precision: what a file of floats holds, and what one of doubles may.
+pub fn is_single(points: &[DVec3]) -> bool {
+    points.iter().flat_map(|p| p.to_array()).all(|x| f64::from(x as f32) == x)
+}
+
+/// The distance between neighbouring coordinates of `points` where they are farthest from the origin, in the precision
+/// they really have; world length.
+pub fn coordinate_step(points: &[DVec3], bounds: &Aabb) -> f64 {
+    let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
+    farthest * if is_single(points) { f64::from(f32::EPSILON) } else { tolerance::EPS }
+}
 
 /// Fails where the points have no surface: none at all, all equal, or all on a line.
 pub fn check_extent(points: &[DVec3]) -> Result<(), CloudError> {
@@ -39,11 +48,19 @@ pub fn check_extent(points: &[DVec3]) -> Result<(), CloudError> {
             .help("the cloud needs points in two directions"));
     }
     let along = (b - a) / length;
-    let slack = LINE * length + SINGLE * bounds.min.abs().max(bounds.max.abs()).max_element();
-    let off_line = |p: &DVec3| slack < ((*p - a) - along * (*p - a).dot(along)).length();
-    if !points.iter().any(off_line) {
+    let off_line = |p: &DVec3| ((*p - a) - along * (*p - a).dot(along)).length();
+    let widest = points.iter().map(off_line).fold(0.0, f64::max);
+    let step = coordinate_step(points, &bounds);
+    if widest <= LINE * length {
         return Err(CloudError::bad("no surface: all points are on a line")
             .help("the cloud needs points in two directions"));
+    }
+    // Rounding moves either end of a distance by half a step on each axis.
+    if widest <= 2.0 * step {
+        let message = format!("no surface: coordinates {step:.1e} apart put all points on a line");
+        return Err(
+            CloudError::bad(message).help("export the cloud in double precision, or nearer to the origin")
+        );
     }
     Ok(())
 }

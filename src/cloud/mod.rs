@@ -7,10 +7,12 @@ mod error;
 mod extent;
 mod groups;
 pub mod holes;
+mod loose;
 mod magic;
 pub mod neighbours;
 pub mod normals;
 mod order;
+mod peers;
 pub mod ply;
 mod samples;
 pub mod scraps;
@@ -24,7 +26,7 @@ use glam::DVec3;
 pub use areas::{AREA_NEIGHBOURS, AREA_REACH, areas};
 pub use duplicates::merge_duplicates;
 pub use error::{CloudError, CloudFault};
-pub use extent::check_extent;
+pub use extent::{check_extent, coordinate_step, is_single};
 pub use samples::{NormalSource, SampleOptions, Samples};
 
 /// Points as a file gives them, in the file's own units.
@@ -36,6 +38,8 @@ pub struct Cloud {
     pub normals: Option<Vec<DVec3>>,
     /// Linear colours, one a point, components in 0..1.
     pub colors: Option<Vec<[f32; 3]>>,
+    /// Rows of the file that were no points, for a coordinate that is not finite.
+    pub dropped: u64,
     /// What was dropped or mended on the way, one sentence each.
     pub notes: Vec<String>,
 }

@@ -159,7 +159,7 @@ impl Neighbours {
 }
 
 /// Inserts into the `k` best so far, which stay sorted.
-fn keep(best: &mut Vec<Near>, k: usize, near: Near) {
+pub(super) fn keep(best: &mut Vec<Near>, k: usize, near: Near) {
     if best.len() == k {
         if !near.before(&best[k - 1]) {
             return;

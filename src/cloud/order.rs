@@ -32,6 +32,7 @@ pub fn select(cloud: Cloud, order: &[u32]) -> Cloud {
         points: pick(&cloud.points, order),
         normals: cloud.normals.map(|n| pick(&n, order)),
         colors: cloud.colors.map(|c| pick(&c, order)),
+        dropped: cloud.dropped,
         notes: cloud.notes,
     }
 }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::groups::Groups;
+use super::loose::loose;
 use super::neighbours::{Neighbours, Table};
 use super::normals::{NORMAL_NEIGHBOURS, roughness};
 
@@ -24,13 +25,22 @@ const REACH: f64 = 1.5;
 /// Points that fill space have a roughness near 0.2 among 16 neighbours, noisy scans below 0.05.
 const ROUGH: f64 = 0.1;
 
-/// Whether each sample is a stray. Two samples belong together if one is among the other's nearest and no farther
-/// than the geometric mean of their widths: a lone sample more than some 3.5 spacings off a surface is not of it. A group is stray if it has fewer than [`LEAST_GROUP`] samples (in clouds of more),
+/// Whether each sample is a stray: [`loose`] by itself, or of a stray group. Two samples belong together if one is among the
+/// other's nearest and no farther than the geometric mean of their widths: a lone sample more than some 3.5 spacings off
+/// a surface is not of it. A group is stray if it has fewer than [`LEAST_GROUP`] samples (in clouds of more),
 /// or if it is no part of the body and its median sample is both thinly strewn for its place and not on a surface:
 /// such as what is left inside a body of which only the skin was wanted.
 ///
-/// Both rules are relative, so a cloud of uneven density keeps its sparse parts as long as they are smooth.
+/// All rules are relative, so a cloud of uneven density keeps its sparse parts as long as they are smooth. What is left may
+/// have strays that others hid: ask again.
 pub fn strays(points: &[DVec3], spacing: &[f64], widths: &[f64], table: &Table) -> Vec<bool> {
+    let mut strays = loose(points, spacing, table);
+    of_groups(points, spacing, widths, table, &mut strays);
+    strays
+}
+
+/// Marks the groups that are stray.
+fn of_groups(points: &[DVec3], spacing: &[f64], widths: &[f64], table: &Table, strays: &mut [bool]) {
     let labels = labels(points, widths, table);
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
     order.sort_unstable_by_key(|&i| (labels[i as usize], i));
@@ -45,13 +55,11 @@ pub fn strays(points: &[DVec3], spacing: &[f64], widths: &[f64], table: &Table) 
         tree.nearest(points[i as usize], 1, &mut near);
         near.first().map_or(0.0, |n| spacing[i as usize] / spacing[body[n.index as usize] as usize])
     };
-    let mut strays = vec![false; points.len()];
     for group in groups.iter().filter(|group| !is_body(group)) {
         let is_stray = group.len() < LEAST_GROUP.min(largest)
             || THIN < median(group, &mut thinness) && ROUGH < roughness_of(points, group);
-        group.iter().for_each(|&i| strays[i as usize] = is_stray);
+        group.iter().for_each(|&i| strays[i as usize] |= is_stray);
     }
-    strays
 }
 
 fn labels(points: &[DVec3], widths: &[f64], table: &Table) -> Vec<u32> {

@@ -162,6 +162,7 @@ pub fn wanted(kind: Kind) -> String {
         Kind::Number => "a number".into(),
         Kind::Int(lo, hi) => format!("a whole number from {lo} to {hi}"),
         Kind::Length | Kind::Size => "a length".into(),
+        Kind::Width => "a length above zero".into(),
         Kind::SizeOrVector => "a length or a vector of 3 lengths".into(),
         Kind::Positive => "a number above zero".into(),
         Kind::Angle => "an angle".into(),

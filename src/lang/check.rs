@@ -41,7 +41,8 @@ fn argument(machine: &mut Machine, param: &Param, expr: &Expr) -> Eval<Value> {
     Ok(match param.kind {
         Kind::Number => Value::Number(given.number(name)?),
         Kind::Length => Value::Number(given.as_number(name, "a length")?),
-        Kind::Positive => Value::Number(positive(&given, name)?),
+        Kind::Positive => Value::Number(above_zero(&given, name, given.number(name)?)?),
+        Kind::Width => Value::Number(above_zero(&given, name, given.as_number(name, &wanted(param.kind))?)?),
         Kind::Int(lo, hi) => Value::Number(whole(&given, name, lo, hi)?),
         Kind::Size => Value::Number(size(machine, &given, name)?),
         Kind::SizeOrVector if matches!(given.value, Val::List(_)) => {
@@ -99,8 +100,7 @@ fn sizes(machine: &mut Machine, given: &Located, name: &str) -> Eval<Vec<f64>> {
     list.items.iter().map(|i| size(machine, i, name)).collect()
 }
 
-fn positive(given: &Located, name: &str) -> Eval<f64> {
-    let x = given.number(name)?;
+fn above_zero(given: &Located, name: &str, x: f64) -> Eval<f64> {
     if x > 0.0 {
         return Ok(x);
     }

@@ -10,7 +10,7 @@ use crate::cloud::holes::{Hole, holes};
 use crate::cloud::neighbours::Neighbours;
 use crate::cloud::scraps::bounding;
 use crate::cloud::winding::Winding;
-use crate::cloud::{Cloud, CloudError, CloudFault, NormalSource, SampleOptions, Samples, ply};
+use crate::cloud::{Cloud, CloudError, CloudFault, NormalSource, SampleOptions, Samples, is_single, ply};
 use crate::diag::{Diagnostic, Fault};
 use crate::scene::{Call, MaterialId, ShapeNode, Value};
 use crate::shot::Material;
@@ -144,9 +144,16 @@ impl<'a> Builder<'a> {
             },
             keep_strays: false,
         };
-        let single = fitness::is_single(&cloud);
+        let single = is_single(&cloud.points);
         let samples = Samples::new(cloud, &options).map_err(|e| cloud_complaint(call, "the cloud", e))?;
         let (made, tree) = (points::options(call), Neighbours::new(&samples.points));
+        if let Some(name) = ["h", "smoothing"].into_iter().find(|name| call.get(name).is_some())
+            && let Some(message) = fitness::too_wide(&samples)
+        {
+            let spacing = fitness::median(samples.spacing.clone());
+            let help = format!("samples are {spacing:.4} apart, and twice that is a usual width");
+            return Err(Diagnostic::error("E0605", message).at(call.place(name), "").help(help));
+        }
         let concerns = Fitness::new(&samples, &tree, single, made.mixed).concerns();
         let warning = |c: Concern| Diagnostic::warning(c.code, c.message).at(call.at, "").help(c.help);
         self.warnings.extend(concerns.into_iter().map(warning));

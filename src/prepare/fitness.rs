@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
+use crate::cloud::Samples;
 use crate::cloud::neighbours::{Near, Neighbours};
-use crate::cloud::{Cloud, Samples};
 use crate::num::eigen::symmetric3;
 
 /// A wall thinner than so many widths is not told apart: no sample's side of it is certain.
@@ -13,6 +13,11 @@ const THINNEST: f64 = 1.25;
 const THINNEST_MIXED: f64 = 2.5;
 /// Noise above this share of the width shows in the surface's topology: 5 of 600 lines were wrong at 0.47.
 const NOISIEST: f64 = 1.0 / 3.0;
+/// A weight of usual width holds some twelve samples. Where it holds so many, five times as wide, every place of the surface costs as
+/// much more.
+const CROWDED: f64 = 300.0;
+/// And where it holds so many nothing of the shape is left, while one ray takes seconds: such widths are refused.
+const MOST_HELD: f64 = 2000.0;
 /// Samples that are asked, where not all need to be.
 const ASKED: usize = 5000;
 /// A share of samples that is worth a word.
@@ -31,6 +36,8 @@ pub(super) struct Fitness {
     step: Option<f64>,
     spacing: f64,
     width: f64,
+    /// Samples within a width of a sample: the median, and about the widest sample.
+    held: [f64; 2],
     /// Share of the samples whose normal in the file was turned.
     turned: f64,
 }
@@ -46,13 +53,8 @@ pub(super) struct Concern {
     pub help: &'static str,
 }
 
-/// Whether all coordinates are those of single precision.
-pub(super) fn is_single(cloud: &Cloud) -> bool {
-    cloud.points.iter().flat_map(|p| p.to_array()).all(|x| f64::from(x as f32) == x)
-}
-
 impl Fitness {
-    /// Measures samples. `tree` is over their points; `single` as [`is_single`] says, `mixed` as
+    /// Measures samples. `tree` is over their points; `single` as [`is_single`](crate::cloud::is_single) says, `mixed` as
     /// [`Options`](crate::solid::point_set::Options).
     pub fn new(samples: &Samples, tree: &Neighbours, single: bool, mixed: bool) -> Fitness {
         let thinnest = if mixed { THINNEST_MIXED } else { THINNEST };
@@ -66,6 +68,7 @@ impl Fitness {
             step: single.then_some(farthest * f64::from(f32::EPSILON)),
             spacing: median(samples.spacing.clone()),
             width,
+            held: held(samples),
             turned: samples.turned as f64 / samples.len().max(1) as f64,
         }
     }
@@ -79,6 +82,18 @@ impl Fitness {
                 "float32 coordinates are {step:.3e} apart so far from the origin: too coarse for this spacing"
             );
             add("W0103", message, "export the cloud in double precision or nearer to the origin");
+        }
+        let [usual, most] = self.held;
+        if CROWDED < usual || MOST_HELD < most {
+            let held = if CROWDED < usual { usual } else { most };
+            let message = format!(
+                "a weight holds up to {held:.0} samples, where 12 are usual: so much longer takes a ray"
+            );
+            add(
+                "W0107",
+                message,
+                "lower `smoothing:` or `h:`, or leave out what is sparse beside dense samples",
+            );
         }
         if NOISIEST * self.width < self.noise {
             let message = "the noise is more than a third of the width of the weights".to_owned();
@@ -110,6 +125,32 @@ pub(super) fn median(mut values: Vec<f64>) -> f64 {
 pub(super) fn asked(samples: &Samples) -> impl Iterator<Item = usize> {
     let (n, count) = (samples.len(), samples.len().min(ASKED));
     (0..count).map(move |k| k * n / count)
+}
+
+/// Why widths that were asked for are too wide to be of use, if they are.
+pub(super) fn too_wide(samples: &Samples) -> Option<String> {
+    let (width, diagonal) = (median(samples.widths.clone()), samples.bounds().diagonal());
+    if diagonal <= width {
+        return Some(format!("a width of {width:.4} is more than the whole cloud, {diagonal:.4} across"));
+    }
+    let held = held(samples)[0];
+    (MOST_HELD < held)
+        .then(|| format!("a weight {width:.4} wide holds some {held:.0} samples, where 12 are usual"))
+}
+
+/// The number of samples within a width of a sample, estimated from at most 2000: the median over 64 samples, and that of the widest
+/// one.
+fn held(samples: &Samples) -> [f64; 2] {
+    const SOME: usize = 2000;
+    let (n, some) = (samples.len(), samples.len().min(SOME));
+    let around = |i: usize| {
+        let (p, square) = (samples.points[i], samples.widths[i] * samples.widths[i]);
+        let near = (0..some).filter(|k| samples.points[k * n / some].distance_squared(p) <= square).count();
+        near as f64 * n as f64 / some as f64
+    };
+    let asked = n.min(64);
+    let widest = (0..n).max_by(|&i, &j| samples.widths[i].total_cmp(&samples.widths[j]));
+    [median((0..asked).map(|k| around(k * n / asked)).collect()), widest.map_or(0.0, around)]
 }
 
 /// Root mean square distance of the samples of the same sheet within two widths from their plane; the median. A disc so

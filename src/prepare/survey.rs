@@ -4,10 +4,10 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::build::try_holes;
-use super::fitness::{Fitness, asked, is_single};
+use super::fitness::{Fitness, asked};
 use crate::cloud::holes::holes;
 use crate::cloud::neighbours::{Near, Neighbours};
-use crate::cloud::{Cloud, CloudError, SampleOptions, Samples};
+use crate::cloud::{Cloud, CloudError, SampleOptions, Samples, is_single};
 use crate::solid::Body;
 use crate::solid::point_set::{Options, PointSet};
 
@@ -49,7 +49,7 @@ pub struct Inside {
 pub struct Survey {
     /// Of this form.
     pub version: u32,
-    /// Points with finite coordinates in the file.
+    /// Points in the file, with those whose coordinates are not finite.
     pub points: usize,
     /// Samples the surface is made of.
     pub samples: usize,
@@ -90,9 +90,10 @@ pub struct Survey {
 
 /// Measures a cloud. Fails where it carries no surface.
 pub fn survey(cloud: Cloud) -> Result<Survey, CloudError> {
-    let points = cloud.points.len();
-    let normals = if cloud.normals.is_some() { "file" } else { "estimated" };
-    let single = is_single(&cloud);
+    let points = cloud.points.len() + cloud.dropped as usize;
+    let given = |n: &Vec<DVec3>| n.iter().any(|n| *n != DVec3::ZERO);
+    let normals = if cloud.normals.as_ref().is_some_and(given) { "file" } else { "estimated" };
+    let single = is_single(&cloud.points);
     let mut samples = Samples::new(cloud, &SampleOptions::default())?;
     let bounds = samples.bounds();
     let options = Options::default();

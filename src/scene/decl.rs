@@ -27,6 +27,8 @@ pub enum Kind {
     Length,
     /// A length above zero; zero is allowed with a warning (the shape is nothing), a negative one is an error.
     Size,
+    /// A length above zero; zero is an error.
+    Width,
     /// A length above zero, or three of them.
     SizeOrVector,
     /// A number above zero.

@@ -18,7 +18,7 @@ pub const PRIMITIVE: Primitive = Primitive {
             Param::named("noise", Kind::Length, "standard deviation of the samples' error (default 0)"),
             Param::named("seed", Kind::Int(0, i64::MAX), "seed of sampling and noise (default 0)"),
             Param::named("smoothing", Kind::Positive, "factor on the automatic width (default 1)"),
-            Param::named("h", Kind::Size, "one width for all samples instead of the automatic ones"),
+            Param::named("h", Kind::Width, "one width for all samples instead of the automatic ones"),
             Param::named("degree", Kind::Int(0, 4), "degree of the local polynomial (default 2)"),
             Param::named("kernel", Kind::Choice(&["compact", "gaussian"]), "the weight"),
             Param::named(

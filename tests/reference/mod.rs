@@ -17,6 +17,8 @@ pub struct Reference {
     /// Whether samples that face another way weigh less.
     pub same_way: bool,
     pub degree: usize,
+    /// Whether the plane is Levin's.
+    pub levin: bool,
 }
 
 impl Reference {
@@ -148,6 +150,45 @@ impl Reference {
         Some((n, t))
     }
 
+    /// Levin's plane from another one, by fixed point: n of least spread about q = r + t n, by an eigenvalue solver, and t a
+    /// root of the derivative of the energy along n, by the secant method; in turn until neither moves. The factors of
+    /// facing must be one.
+    fn levin_plane(&self, r: DVec3, (mut n, mut t): (DVec3, f64)) -> Option<(DVec3, f64)> {
+        let h = self.widths[self.nearest(r).0];
+        for _ in 0..300 {
+            let q = r + t * n;
+            let mut spread = Matrix3::zeros();
+            for (p, width) in self.points.iter().zip(&self.widths) {
+                let x = (*p - q).to_array();
+                let x = Vector3::from(x);
+                spread += self.weight(x.norm_squared() / (width * width))[0] * x * x.transpose();
+            }
+            let eigen = spread.symmetric_eigen();
+            let column = eigen.eigenvectors.column(eigen.eigenvalues.imin());
+            let m = DVec3::new(column[0], column[1], column[2]);
+            let m = if m.dot(n) < 0.0 { -m } else { m };
+            let slope = |t: f64| self.energy(r, m, t).2;
+            let (mut a, mut b) = (t, t + 1e-3 * h);
+            let (mut fa, mut fb) = (slope(a), slope(b));
+            for _ in 0..30 {
+                if fa == fb || (b - a).abs() < 1e-16 * h {
+                    break;
+                }
+                (a, b) = (b, b - fb * (b - a) / (fb - fa));
+                (fa, fb) = (fb, slope(b));
+            }
+            let moved = (m - n).length().max((b - t).abs() / h);
+            (n, t) = (m, b);
+            if moved < 1e-15 {
+                break;
+            }
+            if !(t.abs() < 2.0 * h) {
+                return None;
+            }
+        }
+        Some((n, t))
+    }
+
     /// The same with only the points whose compact weight a plane within SLACK least widths of r can make positive: leaves out
     /// nothing but zeros.
     fn around(&self, r: DVec3) -> Reference {
@@ -172,7 +213,11 @@ impl Reference {
 
     /// Plane and polynomial at a point.
     pub fn fit(&self, r: DVec3) -> Option<Fit> {
-        let (n, t) = self.plane(r)?;
+        let mut plane = self.plane(r)?;
+        if self.levin {
+            plane = self.levin_plane(r, plane)?;
+        }
+        let (n, t) = plane;
         let h = self.widths[self.nearest(r).0];
         let q = r + t * n;
         let (e1, e2) = n.any_orthonormal_pair();

@@ -56,7 +56,7 @@ fn worked(cloud: Cloud, args: &ConvertArgs) -> Result<Cloud, CloudError> {
     let keeps_normals = args.normals || cloud.normals.is_some();
     let options = SampleOptions { keep_strays: !args.clean, ..SampleOptions::default() };
     let Samples { points, normals, colors, notes, .. } = Samples::new(cloud, &options)?;
-    Ok(Cloud { points, normals: keeps_normals.then_some(normals), colors, notes })
+    Ok(Cloud { points, normals: keeps_normals.then_some(normals), colors, notes, dropped: 0 })
 }
 
 fn read(path: &Path, lenient: bool) -> Result<Cloud, Failure> {
@@ -86,13 +86,19 @@ fn json(path: &Path, survey: &Survey) -> String {
 /// Lines for people; lengths as in the file.
 fn table(path: &Path, s: &Survey) -> String {
     let range = |r: &Spread| format!("{:.4e} .. {:.4e} (median {:.4e})", r.least, r.most, r.median);
-    let size = s.max - s.min;
+    // Six digits of the size, but no row of zeros before them.
+    let length = |x: f64| match s.diagonal {
+        0.1..1e6 => format!("{x:.6}"),
+        _ => format!("{x:.6e}"),
+    };
+    let place = |p: glam::DVec3| format!("[{}]", p.to_array().map(length).join(", "));
+    let [x, y, z] = (s.max - s.min).to_array().map(length);
     let percent = |share: f64| format!("{:.2} %", 100.0 * share);
     let odd = 100.0 * f64::from(s.inside.odd) / f64::from(s.inside.chords.max(1));
     let mut rows = vec![
         ("points", format!("{} in the file, {} samples", s.points, s.samples)),
-        ("extent", format!("{:.6} x {:.6} x {:.6}, diagonal {:.6}", size.x, size.y, size.z, s.diagonal)),
-        ("from, to", format!("{:.6} .. {:.6}", s.min, s.max)),
+        ("extent", format!("{x} x {y} x {z}, diagonal {}", length(s.diagonal))),
+        ("from, to", format!("{} .. {}", place(s.min), place(s.max))),
         ("spacing", format!("{}, nearest +-{}", range(&s.spacing), percent(s.unevenness))),
         ("noise", format!("{:.4e}, {:.3} of a width", s.noise, s.noise / s.width.median)),
         ("width", range(&s.width)),

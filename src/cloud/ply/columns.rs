@@ -39,7 +39,6 @@ pub struct Columns {
     row: [f64; 9],
     color_scale: Option<ColorScale>,
     cloud: Cloud,
-    dropped: u64,
     first_dropped: u64,
     bad_normals: usize,
     wide_colors: bool,
@@ -96,7 +95,6 @@ impl Columns {
                 colors: has[2].then(Vec::new),
                 ..Cloud::default()
             },
-            dropped: 0,
             first_dropped: 0,
             bad_normals: 0,
             wide_colors: false,
@@ -125,10 +123,10 @@ impl Columns {
         let [x, y, z, nx, ny, nz, colors @ ..] = self.row;
         let p = DVec3::new(x, y, z);
         if !p.is_finite() {
-            if self.dropped == 0 {
+            if self.cloud.dropped == 0 {
                 self.first_dropped = index;
             }
-            self.dropped += 1;
+            self.cloud.dropped += 1;
             return;
         }
         // Adding zero turns -0 into 0, so that equal positions have equal bits.
@@ -151,9 +149,9 @@ impl Columns {
     /// The cloud of all rows.
     pub fn finish(self, encoding: Encoding) -> Result<Cloud, CloudError> {
         let mut cloud = self.cloud;
-        let total = cloud.points.len() as u64 + self.dropped;
+        let total = cloud.points.len() as u64 + cloud.dropped;
         let bounds = crate::geom::Aabb::of_points(cloud.points.iter().copied());
-        let wild = NON_FINITE_SHARE * (total as f64) < self.dropped as f64 || SPAN < bounds.diagonal();
+        let wild = NON_FINITE_SHARE * (total as f64) < cloud.dropped as f64 || SPAN < bounds.diagonal();
         if wild && encoding != Encoding::Ascii {
             return Err(CloudError::bad(
                 "most coordinates are not finite or absurdly large: wrong byte order?",
@@ -164,8 +162,8 @@ impl Columns {
             let message = format!("no points: none of the {total} rows has finite coordinates");
             return Err(CloudError::bad(message).help("export the cloud again"));
         }
-        if 0 < self.dropped {
-            let (n, first) = (self.dropped, self.first_dropped);
+        if 0 < cloud.dropped {
+            let (n, first) = (cloud.dropped, self.first_dropped);
             cloud.notes.push(format!(
                 "{n} points with coordinates that are not finite were dropped, the first is point {first}"
             ));

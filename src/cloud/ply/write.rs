@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::super::Cloud;
+use super::super::{Cloud, is_single};
 
 /// How a cloud is written.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -16,7 +16,7 @@ pub enum Encoding {
 /// Writes positions, and normals and colours where there are any. Reading the file gives the same positions to the bit,
 /// the same normals to rounding, and colours, which are stored as eight bits of sRGB, to one part in 255.
 pub fn write(cloud: &Cloud, encoding: Encoding, out: &mut dyn Write) -> io::Result<()> {
-    let wide = !cloud.points.iter().flat_map(|p| p.to_array()).all(|x| f64::from(x as f32) == x);
+    let wide = !is_single(&cloud.points);
     let kind = if wide { "double" } else { "float" };
     let format = if encoding == Encoding::Binary { "binary_little_endian" } else { "ascii" };
     writeln!(out, "ply\nformat {format} 1.0\nelement vertex {}", cloud.points.len())?;
