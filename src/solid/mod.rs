@@ -2,14 +2,21 @@
 //! primitive, one line of [`table::PRIMITIVES`] for each; scenes, materials and CSG are not known here.
 
 pub mod block;
+pub mod capsule;
+pub mod cone;
 mod crossing;
 pub mod cylinder;
 pub mod half_space;
 pub mod plane;
 pub mod point_set;
 pub mod points;
+pub mod quadric;
+pub mod rounded_box;
 pub mod sphere;
+pub mod superellipsoid;
 pub mod table;
+pub mod torus;
+pub mod tube;
 
 use std::fmt::Debug;
 use std::sync::Arc;
