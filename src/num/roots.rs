@@ -51,7 +51,7 @@ const MOST_STEPS: u32 = 1200;
 /// tell of its quadratic convergence. A derivative of zero or NaN leads to bisection. Oracle: the closed forms of the
 /// solids that use it, and bisection in the tests below.
 pub fn bracketed(f: impl Fn(f64) -> [f64; 2], mut lo: f64, mut hi: f64, start: f64, rising: bool) -> f64 {
-    let (mut x, mut last) = (start, f64::INFINITY);
+    let (mut x, mut last, mut newtons) = (start, f64::INFINITY, 0);
     for _ in 0..MOST_STEPS {
         let [y, slope] = f(x);
         if y == 0.0 {
@@ -64,22 +64,20 @@ pub fn bracketed(f: impl Fn(f64) -> [f64; 2], mut lo: f64, mut hi: f64, start: f
         }
         let newton = x - y / slope;
         let step = (newton - x).abs();
-        let next = if lo <= newton && newton <= hi && step < SLOWEST * last {
+        if lo <= newton && newton <= hi && step < SLOWEST * last {
             let ratio = step / last;
-            if newton == x || step * ratio * ratio <= 0.5 * f64::EPSILON * newton.abs() {
+            let converged = 0 < newtons && step * ratio * ratio <= 0.5 * f64::EPSILON * newton.abs();
+            if newton == x || converged {
                 return newton;
             }
-            last = step;
-            newton
+            (x, last, newtons) = (newton, step, newtons + 1);
         } else {
             let middle = lo + 0.5 * (hi - lo);
             if middle <= lo || hi <= middle {
                 return middle;
             }
-            last = hi - lo;
-            middle
-        };
-        x = next;
+            (x, last, newtons) = (middle, hi - lo, 0);
+        }
     }
     x
 }

@@ -141,6 +141,8 @@ pub struct Counts {
     pub ties: u64,
     /// Spans dropped and gaps filled by the clean-up.
     pub cleaned: u64,
+    /// Rays without a direction or not finite: they meet nothing.
+    pub invalid_rays: u64,
 }
 
 impl Counts {
@@ -158,5 +160,6 @@ impl Counts {
         self.leaves_skipped += o.leaves_skipped;
         self.ties += o.ties;
         self.cleaned += o.cleaned;
+        self.invalid_rays += o.invalid_rays;
     }
 }
