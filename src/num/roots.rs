@@ -47,11 +47,12 @@ const MOST_STEPS: u32 = 1200;
 /// its value and its derivative; `start` lies in the bracket.
 ///
 /// Newton's method, bisection where it leaves the bracket or crawls (Press et al., Numerical Recipes 9.4). It ends
-/// where the value is zero, a step no longer changes `x`, or the step ahead is below half an ulp by what the last two
-/// tell of its quadratic convergence. A derivative of zero or NaN leads to bisection. Oracle: the closed forms of the
-/// solids that use it, and bisection in the tests below.
+/// where the value is zero or a step is below half an ulp of the bracket's larger end: a root is as exact as numbers of
+/// that size. A derivative of zero or NaN leads to bisection. Oracle: the closed forms of the solids that use it, and the
+/// tests below.
 pub fn bracketed(f: impl Fn(f64) -> [f64; 2], mut lo: f64, mut hi: f64, start: f64, rising: bool) -> f64 {
-    let (mut x, mut last, mut newtons) = (start, f64::INFINITY, 0);
+    let finest = 0.5 * f64::EPSILON * lo.abs().max(hi.abs());
+    let (mut x, mut last) = (start, f64::INFINITY);
     for _ in 0..MOST_STEPS {
         let [y, slope] = f(x);
         if y == 0.0 {
@@ -64,19 +65,17 @@ pub fn bracketed(f: impl Fn(f64) -> [f64; 2], mut lo: f64, mut hi: f64, start: f
         }
         let newton = x - y / slope;
         let step = (newton - x).abs();
+        if step <= finest {
+            return newton;
+        }
         if lo <= newton && newton <= hi && step < SLOWEST * last {
-            let ratio = step / last;
-            let converged = 0 < newtons && step * ratio * ratio <= 0.5 * f64::EPSILON * newton.abs();
-            if newton == x || converged {
-                return newton;
-            }
-            (x, last, newtons) = (newton, step, newtons + 1);
+            (x, last) = (newton, step);
         } else {
             let middle = lo + 0.5 * (hi - lo);
             if middle <= lo || hi <= middle {
                 return middle;
             }
-            (x, last, newtons) = (middle, hi - lo, 0);
+            (x, last) = (middle, hi - lo);
         }
     }
     x
