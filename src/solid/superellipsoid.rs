@@ -74,6 +74,11 @@ fn norm(x: f64, y: f64, p: f64) -> [f64; 3] {
     if large == 0.0 {
         return [0.0; 3];
     }
+    // Where the square does not underflow.
+    if p == 2.0 && f64::MIN_POSITIVE < large * large {
+        let length = (x * x + y * y).sqrt();
+        return [length, x / length, y / length];
+    }
     let ratio = small / large;
     let u = exp(p * ln(ratio));
     let l = ln_1p(u) / p;
