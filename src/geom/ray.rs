@@ -31,6 +31,18 @@ impl Ray {
         self.origin + t * self.dir
     }
 
+    /// The `t` at which the line is nearest to a point, and the vector from there to the point of the line: however far
+    /// the origin lies, a polynomial about this place keeps its digits. Two steps, as the first is rounded on the scale
+    /// of the distance.
+    pub fn nearest_to(&self, center: DVec3) -> (f64, DVec3) {
+        let from = self.origin - center;
+        let per = 1.0 / self.dir.length_squared();
+        let first = -from.dot(self.dir) * per;
+        let foot = from + first * self.dir;
+        let second = -foot.dot(self.dir) * per;
+        (first + second, foot + second * self.dir)
+    }
+
     /// The same ray in another frame; `t` keeps its meaning.
     pub fn transformed(&self, to_from: &DAffine3) -> Ray {
         Ray::new(to_from.transform_point3(self.origin), to_from.transform_vector3(self.dir))

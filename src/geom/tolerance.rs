@@ -8,6 +8,10 @@ pub const EPS: f64 = f64::EPSILON;
 /// to differ by at most 3.6 of these units over 3.8 million rays; 16 leaves a factor of four.
 pub const CLEANUP: f64 = 16.0;
 
+/// How many units of `EPS` times the sum of its terms' sizes rounding leaves in a quadratic form of three
+/// coordinates: nine products summed, each with two roundings and at most five additions, halved on the mean.
+pub const FORM: f64 = 4.0;
+
 /// Default tolerance of a point set surface, relative to the diagonal of its samples.
 pub const POINTS: f64 = 1e-9;
 

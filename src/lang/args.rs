@@ -168,6 +168,7 @@ pub fn wanted(kind: Kind) -> String {
         Kind::Angle => "an angle".into(),
         Kind::Color => "a colour".into(),
         Kind::Vector(n) => format!("a vector of {n} numbers"),
+        Kind::Points => "a list of points".into(),
         Kind::Choice(words) => format!("one of {}", quoted(words)),
         Kind::Choices(words) => format!("a list of {}", quoted(words)),
         Kind::Bool => "`true` or `false`".into(),

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use glam::DVec3;
+
 use super::args::{Callee, formals, quoted, wanted};
 use super::ast::{Args, Expr};
 use super::eval::Machine;
@@ -56,6 +58,7 @@ fn argument(machine: &mut Machine, param: &Param, expr: &Expr) -> Eval<Value> {
             _ => return Err(given.unlike(name, "a colour").help("write a colour, such as `#b8683c`").into()),
         },
         Kind::Vector(n) => Value::Vector(given.vector(name, n)?),
+        Kind::Points => Value::Points(points(&given, name)?),
         Kind::Bool => match given.value {
             Val::Bool(b) => Value::Bool(b),
             _ => return Err(given.unlike(name, "`true` or `false`").help("write `true` or `false`").into()),
@@ -98,6 +101,13 @@ fn sizes(machine: &mut Machine, given: &Located, name: &str) -> Eval<Vec<f64>> {
     };
     given.vector(name, 3)?;
     list.items.iter().map(|i| size(machine, i, name)).collect()
+}
+
+fn points(given: &Located, name: &str) -> Eval<Vec<DVec3>> {
+    match &given.value {
+        Val::List(list) => list.items.iter().map(|point| point.vec3(name)).collect(),
+        _ => Err(given.unlike(name, "a list of points").help("write `[[0, 0, 0], [1, 0, 0]]`").into()),
+    }
 }
 
 fn above_zero(given: &Located, name: &str, x: f64) -> Eval<f64> {

@@ -1,6 +1,8 @@
-//! Small numeric routines: roots, 3x3 eigenvectors, small solves, hashes, lanes.
+//! Small numeric routines: roots, powers, 3x3 eigenvectors, small solves, hashes, lanes.
 pub mod cholesky;
+pub mod convex;
 pub mod eigen;
 pub mod hash;
 pub mod lanes;
+pub mod power;
 pub mod roots;

@@ -39,6 +39,8 @@ pub enum Kind {
     Color,
     /// A vector of so many numbers.
     Vector(usize),
+    /// A list of points, each of three numbers.
+    Points,
     /// One of these words, the first being the default.
     Choice(&'static [&'static str]),
     /// A list of these words.

@@ -19,6 +19,8 @@ pub enum Value {
     Color([f32; 3]),
     /// Two to four numbers.
     Vector(Vec<f64>),
+    /// Points.
+    Points(Vec<DVec3>),
     /// Text.
     Text(String),
     /// Text that names a file.

@@ -40,6 +40,13 @@ pub struct Surface {
     pub offset: f64,
 }
 
+/// Whether a ray can be traced; one that cannot is counted.
+fn counted(ray: &Ray, scratch: &mut csg::Scratch) -> bool {
+    let valid = ray.is_valid();
+    scratch.solid.counts.invalid_rays += u64::from(!valid);
+    valid
+}
+
 impl World {
     /// The union of `solids` and the sheets beside it. `bounds` is a box around what is bounded, `bare` the material
     /// of faces that have none.
@@ -52,8 +59,12 @@ impl World {
         self.bounds
     }
 
-    /// The first surface with `t` in `range`.
+    /// The first surface with `t` in `range`; a ray that is none ([`Ray::is_valid`]) meets nothing and is counted, here
+    /// and in what else asks for surfaces.
     pub fn first(&self, ray: &Ray, range: Interval, scratch: &mut csg::Scratch) -> Option<Hit> {
+        if !counted(ray, scratch) {
+            return None;
+        }
         let solid = self.solids.first(ray, range, scratch);
         let mut best = solid.map(|(boundary, entering)| Hit { boundary, entering, sheet: false });
         for index in 0..self.sheets.len() {
@@ -66,17 +77,23 @@ impl World {
 
     /// Whether anything lies in `range`.
     pub fn blocked(&self, ray: &Ray, range: Interval, scratch: &mut csg::Scratch) -> bool {
-        self.solids.any(ray, range, scratch)
-            || (0..self.sheets.len()).any(|i| self.sheet(i, ray, range, scratch, |_| false).is_some())
+        counted(ray, scratch)
+            && (self.solids.any(ray, range, scratch)
+                || (0..self.sheets.len()).any(|i| self.sheet(i, ray, range, scratch, |_| false).is_some()))
     }
 
     /// All spans of the union of the solids, clipped to `range`.
     pub fn spans(&self, ray: &Ray, range: Interval, scratch: &mut csg::Scratch, out: &mut Spans) {
-        self.solids.spans(ray, range, scratch, out);
+        if counted(ray, scratch) {
+            self.solids.spans(ray, range, scratch, out);
+        }
     }
 
     /// All crossings of sheets in `range`, ascending.
     pub fn sheets(&self, ray: &Ray, range: Interval, scratch: &mut csg::Scratch, out: &mut Vec<Hit>) {
+        if !counted(ray, scratch) {
+            return;
+        }
         for index in 0..self.sheets.len() {
             self.sheet(index, ray, range, scratch, |hit| {
                 out.push(hit);

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::rounded_box::RoundedBox;
 use super::table::{Build, Primitive};
 use super::{Answer, Crossing, Scratch, Solid};
 use crate::geom::{Aabb, Interval, Ray};
@@ -20,6 +21,11 @@ pub const PRIMITIVE: Primitive = Primitive {
             Param::placed("b", Kind::Vector(3), "the opposite corner"),
             Param::named("size", Kind::SizeOrVector, "edge lengths, or one for all"),
             Param::named("at", Kind::Vector(3), "centre, with size (default the origin)"),
+            Param::named(
+                "round",
+                Kind::Length,
+                "radius of rounded edges, up to half the shortest (default 0)",
+            ),
         ],
         example: "box([0, 0, 0], [1, 1, 1])",
     },
@@ -40,16 +46,35 @@ fn build(call: &Call) -> Result<Arc<dyn Solid>, BuildError> {
     };
     match (corners, size) {
         ((Some(a), Some(b)), None) if call.get("at").is_none() => {
-            Ok(Arc::new(Block(Aabb { min: a.min(b), max: a.max(b) })))
+            rounded(Aabb { min: a.min(b), max: a.max(b) }, call)
         }
         ((None, None), Some(size)) => {
-            Ok(Arc::new(Block(Aabb { min: center - 0.5 * size, max: center + 0.5 * size })))
+            rounded(Aabb { min: center - 0.5 * size, max: center + 0.5 * size }, call)
         }
         ((Some(_), Some(_)), None) => wrong("at", "`at` goes with `size`, not with two corners"),
         (_, Some(_)) => wrong("size", "a box has either two corners or a size"),
         ((Some(_), None) | (None, Some(_)), None) => wrong("a", "a box needs two corners"),
         ((None, None), None) => wrong("", "a box needs two corners or a size"),
     }
+}
+
+/// A box with the edges that a call asks for.
+fn rounded(bounds: Aabb, call: &Call) -> Result<Arc<dyn Solid>, BuildError> {
+    let radius = call.number("round").unwrap_or(0.0);
+    let most = 0.5 * bounds.size().min_element();
+    let wrong = |message: String, help: String| Err(BuildError { param: "round", message, help });
+    if radius < 0.0 {
+        return wrong("`round` is negative".into(), "a radius is zero or more".into());
+    }
+    if 0.0 < most && most < radius {
+        let message = format!("`round` is {radius}, more than half of the shortest edge");
+        return wrong(message, format!("write at most {most}"));
+    }
+    Ok(if 0.0 < radius && 0.0 < most {
+        Arc::new(RoundedBox { outer: bounds, radius })
+    } else {
+        Arc::new(Block(bounds))
+    })
 }
 
 /// The points of a box, perhaps unbounded. A ray that runs in a face is inside iff the face is the low one.
@@ -90,11 +115,20 @@ impl Solid for Block {
     }
 
     fn moved(&self, by: f64) -> Result<Option<Arc<dyn Solid>>, &'static str> {
-        if 0.0 < by {
-            return Err("what lies near a box has rounded edges");
+        let moved = self.0.inflated(by);
+        if !self.0.min.cmplt(self.0.max).all() || !moved.min.cmplt(moved.max).all() {
+            return Ok(None);
         }
-        let inner = self.0.inflated(by);
-        Ok(inner.min.cmplt(inner.max).all().then(|| Arc::new(Block(inner)) as Arc<dyn Solid>))
+        // A slab has no edges.
+        let finite = self.0.min.is_finite_mask() | self.0.max.is_finite_mask();
+        let slab = finite.bitmask().count_ones() <= 1;
+        Ok(Some(if by <= 0.0 || slab {
+            Arc::new(Block(moved))
+        } else if self.0.is_finite() {
+            Arc::new(RoundedBox { outer: moved, radius: by })
+        } else {
+            return Err("what lies near an unbounded box has rounded edges");
+        }))
     }
 
     fn normal(&self, _: &Ray, crossing: &Crossing, _: &mut Scratch) -> DVec3 {

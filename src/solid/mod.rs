@@ -2,14 +2,21 @@
 //! primitive, one line of [`table::PRIMITIVES`] for each; scenes, materials and CSG are not known here.
 
 pub mod block;
+pub mod capsule;
+pub mod cone;
 mod crossing;
 pub mod cylinder;
 pub mod half_space;
 pub mod plane;
 pub mod point_set;
 pub mod points;
+pub mod quadric;
+pub mod rounded_box;
 pub mod sphere;
+pub mod superellipsoid;
 pub mod table;
+pub mod torus;
+pub mod tube;
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -134,6 +141,8 @@ pub struct Counts {
     pub ties: u64,
     /// Spans dropped and gaps filled by the clean-up.
     pub cleaned: u64,
+    /// Rays without a direction or not finite: they meet nothing.
+    pub invalid_rays: u64,
 }
 
 impl Counts {
@@ -151,5 +160,6 @@ impl Counts {
         self.leaves_skipped += o.leaves_skipped;
         self.ties += o.ties;
         self.cleaned += o.cleaned;
+        self.invalid_rays += o.invalid_rays;
     }
 }

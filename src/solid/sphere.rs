@@ -56,19 +56,22 @@ impl Solid for Sphere {
         Aabb { min: center - reach, max: center + reach }
     }
 
-    /// |o + t d|^2 = 1 in units of the radii. The discriminant is taken at the point nearest to the centre,
-    /// (1 - m)(1 + m), which keeps its digits however far the origin lies; the constant term as (|o| - 1)(|o| + 1),
-    /// which keeps them however near the surface.
+    /// |o + t d|^2 = r^2, for an ellipsoid in units of its radii. The discriminant is taken at the point nearest to the
+    /// centre, (r - m)(r + m), which keeps its digits however far the origin lies; the constant term as
+    /// (|o| - r)(|o| + r), which keeps them however near the surface.
     fn crossings(&self, ray: &Ray, _: Interval, _: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
         if self.radii.min_element() <= 0.0 {
             return Answer::whole_line(false);
         }
-        let (o, d) = ((ray.origin - self.center) / self.radii, ray.dir / self.radii);
+        let (mut o, mut d, mut r) = (ray.origin - self.center, ray.dir, self.radii.x);
+        if self.radii != DVec3::splat(r) {
+            (o, d, r) = (o / self.radii, d / self.radii, 1.0);
+        }
         let a = d.length_squared();
         let b = o.dot(d);
         let m = (o - (b / a) * d).length();
-        let c = (o.length() - 1.0) * (o.length() + 1.0);
-        if let Some([t0, t1]) = roots::quadratic(a, b, c, a * (1.0 - m) * (1.0 + m)) {
+        let c = (o.length() - r) * (o.length() + r);
+        if let Some([t0, t1]) = roots::quadratic(a, b, c, a * (r - m) * (r + m)) {
             out.push(Crossing::exact(t0, true, 0));
             out.push(Crossing::exact(t1, false, 0));
         }

@@ -3,7 +3,10 @@
 
 use std::sync::Arc;
 
-use super::{Solid, block, cylinder, half_space, plane, points, sphere};
+use super::{
+    Solid, block, capsule, cone, cylinder, half_space, plane, points, quadric, sphere, superellipsoid, torus,
+    tube,
+};
 use crate::scene::{BuildError, Call, Decl};
 
 /// How a primitive is made.
@@ -29,6 +32,12 @@ pub static PRIMITIVES: &[Primitive] = &[
     block::PRIMITIVE,
     sphere::PRIMITIVE,
     cylinder::PRIMITIVE,
+    cone::PRIMITIVE,
+    capsule::PRIMITIVE,
+    tube::PRIMITIVE,
+    torus::PRIMITIVE,
+    superellipsoid::PRIMITIVE,
+    quadric::PRIMITIVE,
     half_space::PRIMITIVE,
     plane::PRIMITIVE,
     points::PRIMITIVE,
