@@ -8,10 +8,23 @@ pub const EPS: f64 = f64::EPSILON;
 /// to differ by at most 3.6 of these units over 3.8 million rays; 16 leaves a factor of four.
 pub const CLEANUP: f64 = 16.0;
 
+/// A sum of a few products of numbers, none above 1 in size, is off by less than this times `EPS`: some ten roundings
+/// and two of sine and cosine, doubled.
+pub const NOISE: f64 = 32.0;
+
+/// A root that lies beyond the end of its piece of boundary by less than this share of the piece is still tried: the
+/// joint with the next piece may lie a rounding away. What is tried in vain costs time only, so the share is generous.
+pub const JOINT: f64 = 1e-6;
+
 /// Default tolerance of a point set surface, relative to the diagonal of its samples.
 pub const POINTS: f64 = 1e-9;
 
 /// The clean-up's thickness for lengths up to `scale`, world length.
 pub fn cleanup(scale: f64) -> f64 {
     CLEANUP * EPS * scale
+}
+
+/// What roundings can make of a short expression whose terms are up to `scale`.
+pub fn noise(scale: f64) -> f64 {
+    NOISE * EPS * scale
 }

@@ -4,10 +4,14 @@
 pub mod block;
 mod crossing;
 pub mod cylinder;
+pub mod extrude;
 pub mod half_space;
+pub mod outline;
+pub mod parity;
 pub mod plane;
 pub mod point_set;
 pub mod points;
+pub mod revolve;
 pub mod sphere;
 pub mod table;
 

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::{Solid, block, cylinder, half_space, plane, points, sphere};
+use super::{Solid, block, cylinder, extrude, half_space, plane, points, revolve, sphere};
 use crate::scene::{BuildError, Call, Decl};
 
 /// How a primitive is made.
@@ -29,9 +29,11 @@ pub static PRIMITIVES: &[Primitive] = &[
     block::PRIMITIVE,
     sphere::PRIMITIVE,
     cylinder::PRIMITIVE,
+    extrude::PRIMITIVE,
     half_space::PRIMITIVE,
     plane::PRIMITIVE,
     points::PRIMITIVE,
+    revolve::PRIMITIVE,
 ];
 
 /// The declarations of all primitives.
