@@ -10,6 +10,7 @@ pub mod holes;
 mod magic;
 pub mod neighbours;
 pub mod normals;
+mod open;
 mod order;
 pub mod ply;
 mod samples;
@@ -25,6 +26,7 @@ pub use areas::{AREA_NEIGHBOURS, AREA_REACH, areas};
 pub use duplicates::merge_duplicates;
 pub use error::{CloudError, CloudFault};
 pub use extent::check_extent;
+pub use open::open;
 pub use samples::{NormalSource, SampleOptions, Samples};
 
 /// Points as a file gives them, in the file's own units.

@@ -6,6 +6,8 @@ mod crossing;
 pub mod cylinder;
 pub mod extrude;
 pub mod half_space;
+pub mod heightfield;
+pub mod mesh;
 pub mod outline;
 pub mod parity;
 pub mod plane;
@@ -90,6 +92,11 @@ pub trait Solid: Send + Sync + Debug {
     /// A sheet with a thickness, `by` / 2 to each side (own units); `None` where it has an inside already.
     fn thickened(&self, _by: f64) -> Option<Arc<dyn Solid>> {
         None
+    }
+
+    /// What to say of a sheet where an inside is wanted.
+    fn sheet_words(&self) -> String {
+        "a Sheet: an open surface".into()
     }
 
     /// Whether asking costs much more than a closed form: such solids are asked last.

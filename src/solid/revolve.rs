@@ -181,6 +181,8 @@ impl Line {
             return;
         }
         let range = self.between(a.y.min(b.y), a.y.max(b.y));
+        // Through the tip of a cone both halves are met in a double root.
+        [a, b].iter().filter(|end| end.x == 0.0 && d.z != 0.0).for_each(|end| show((end.y - p.z) / d.z));
         let (x, v) = (dz * p.xy(), dz * d.xy());
         let (l, m) = (a.x * dz + dr * (p.z - a.y), dr * d.z);
         let (root, speed) = (x.length(), v.length_squared());

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::{Solid, block, cylinder, extrude, half_space, plane, points, revolve, sphere};
+use super::{Solid, block, cylinder, extrude, half_space, heightfield, mesh, plane, points, revolve, sphere};
 use crate::scene::{BuildError, Call, Decl};
 
 /// How a primitive is made.
@@ -11,6 +11,10 @@ use crate::scene::{BuildError, Call, Decl};
 pub enum Build {
     /// From the arguments alone.
     Exact(fn(&Call) -> Result<Arc<dyn Solid>, BuildError>),
+    /// From the triangles of a file.
+    Mesh,
+    /// From the heights of an image file.
+    Heights,
     /// From the samples of a file or of another solid: whoever prepares the scene fetches those.
     Points,
 }
@@ -31,6 +35,8 @@ pub static PRIMITIVES: &[Primitive] = &[
     cylinder::PRIMITIVE,
     extrude::PRIMITIVE,
     half_space::PRIMITIVE,
+    heightfield::PRIMITIVE,
+    mesh::PRIMITIVE,
     plane::PRIMITIVE,
     points::PRIMITIVE,
     revolve::PRIMITIVE,
