@@ -5,6 +5,7 @@ use std::io::{BufRead, BufReader, Seek};
 use std::path::Path;
 
 use exr::image::read::read;
+use exr::image::{AnyChannel, FlatSamples};
 use exr::prelude::{ReadChannels, ReadLayers};
 use image::{ImageDecoder, ImageReader};
 
@@ -101,20 +102,25 @@ fn of_exr(mut stream: impl BufRead + Seek + Send) -> Result<Heights, CloudError>
         .non_parallel()
         .from_buffered(stream)
         .map_err(bad)?;
-    let (size, channels) = (image.layer_data.size, &image.layer_data.channel_data.list);
+    let size = image.layer_data.size;
     check_size(size.x() as u64, size.y() as u64)?;
+    grey(size.x(), size.y(), &image.layer_data.channel_data.list)
+}
+
+/// The heights of the channels of an EXR.
+fn grey(width: usize, depth: usize, channels: &[AnyChannel<FlatSamples>]) -> Result<Heights, CloudError> {
     let named = |name: &str| channels.iter().find(|c| c.name.to_string() == name);
-    let used: Vec<_> = match (named("Y"), channels.as_slice()) {
+    let used: Vec<_> = match (named("Y"), channels) {
         (Some(y), _) => vec![y],
         (None, [only]) => vec![only],
         _ => ["R", "G", "B"].iter().filter_map(|n| named(n)).collect(),
     };
-    let pixels = size.x() * size.y();
+    let pixels = width * depth;
     if used.is_empty() || used.iter().any(|c| c.sample_data.len() != pixels) {
         let error = CloudError::bad("the EXR has neither a channel `Y` nor `R`, `G` and `B`, at full size");
         return Err(error.help("export the heights as one channel `Y`"));
     }
-    let mut heights = Heights { width: size.x(), depth: size.y(), ..Heights::default() };
+    let mut heights = Heights { width, depth, ..Heights::default() };
     let mut mended = 0usize;
     for i in 0..pixels {
         let sum: f32 = used.iter().map(|c| c.sample_data.value_by_flat_index(i).to_f32()).sum();

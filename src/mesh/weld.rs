@@ -2,6 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
+use glam::DVec3;
+
 use super::{Mesh, Soup};
 use crate::cloud::{CloudError, check_extent};
 
@@ -16,23 +18,26 @@ pub struct Seams {
     pub unlike: usize,
 }
 
-/// Makes a mesh of what a file holds. Corners are equal where their coordinates are.
-pub fn mesh(soup: Soup) -> Result<Mesh, CloudError> {
+/// The different points, and for each point of a file which of them it is, unless it is not finite.
+fn joined(all: &[DVec3]) -> (Vec<DVec3>, Vec<Option<u32>>) {
     let mut known: HashMap<[u64; 3], u32> = HashMap::new();
     let mut points = Vec::new();
-    let place: Vec<Option<u32>> = soup
-        .points
-        .iter()
-        .map(|p| {
-            let key = p.to_array().map(f64::to_bits);
-            p.is_finite().then(|| {
-                *known.entry(key).or_insert_with(|| {
-                    points.push(*p);
-                    points.len() as u32 - 1
-                })
+    let place = all.iter().map(|p| {
+        let key = p.to_array().map(f64::to_bits);
+        p.is_finite().then(|| {
+            *known.entry(key).or_insert_with(|| {
+                points.push(*p);
+                points.len() as u32 - 1
             })
         })
-        .collect();
+    });
+    let place = place.collect();
+    (points, place)
+}
+
+/// Makes a mesh of what a file holds. Corners are equal where their coordinates are.
+pub fn mesh(soup: Soup) -> Result<Mesh, CloudError> {
+    let (points, place) = joined(&soup.points);
     let (mut wild, mut thin, mut double) = (0usize, 0usize, 0usize);
     let mut seen = HashSet::new();
     let mut triangles = Vec::new();
@@ -73,7 +78,7 @@ pub fn mesh(soup: Soup) -> Result<Mesh, CloudError> {
 
 fn has_no_area(mesh: &Mesh, [a, b, c]: &[u32; 3]) -> bool {
     let [a, b, c] = [a, b, c].map(|i| mesh.points[*i as usize]);
-    (b - a).cross(c - a) == glam::DVec3::ZERO
+    (b - a).cross(c - a) == DVec3::ZERO
 }
 
 impl Mesh {

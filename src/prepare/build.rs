@@ -12,13 +12,10 @@ use crate::cloud::scraps::bounding;
 use crate::cloud::winding::Winding;
 use crate::cloud::{Cloud, CloudError, CloudFault, NormalSource, SampleOptions, Samples, ply};
 use crate::diag::{Diagnostic, Fault};
-use crate::heights;
-use crate::mesh::{self, Seams};
 use crate::scene::{Call, MaterialId, ShapeNode, Value};
 use crate::shot::Material;
-use crate::solid::mesh::TriangleMesh;
 use crate::solid::point_set::{Options, PointSet, Solidity};
-use crate::solid::{Body, Counts, Solid, heightfield, points};
+use crate::solid::{Body, Counts, Solid, points};
 use crate::source::Span;
 
 /// A scan, with what has been found out about it so far.
@@ -119,7 +116,13 @@ impl<'a> Builder<'a> {
     }
 
     /// The path to open for a name in a scene, remembered as an input.
-    fn input(&mut self, text: &str, base: &Path, given: bool, at: Span) -> Result<PathBuf, Diagnostic> {
+    pub(super) fn input(
+        &mut self,
+        text: &str,
+        base: &Path,
+        given: bool,
+        at: Span,
+    ) -> Result<PathBuf, Diagnostic> {
         let super::Options { scene_dir, allow_read, .. } = self.options;
         let path = files::resolve(text, base, given, scene_dir, allow_read, at)?;
         self.inputs.push(path.clone());
@@ -127,55 +130,9 @@ impl<'a> Builder<'a> {
     }
 
     /// Warns of what was dropped or mended in a file.
-    fn noted(&mut self, text: &str, notes: &[String], at: Span) {
+    pub(super) fn noted(&mut self, text: &str, notes: &[String], at: Span) {
         let warning = |note| Diagnostic::warning("W0102", format!("`{text}`: {note}")).at(at, "");
         self.warnings.extend(notes.iter().map(warning));
-    }
-
-    /// What `read` makes of the file that a call names as `file`; `usual` is the way out of most errors.
-    fn read<T>(
-        &mut self,
-        call: &Call,
-        usual: &str,
-        read: impl FnOnce(&Path) -> Result<(T, Vec<String>), CloudError>,
-    ) -> Result<T, Diagnostic> {
-        let Some(Value::Path { text, base, from_command_line }) = call.get("file") else {
-            return Err(Diagnostic::error("E0900", "this call names no file").at(call.at, ""));
-        };
-        let at = call.place("file");
-        let path = self.input(text, base, *from_command_line, at)?;
-        let (made, notes) = read(&path).map_err(|e| file_complaint(at, &format!("`{text}`"), e, usual))?;
-        self.noted(text, &notes, at);
-        Ok(made)
-    }
-
-    /// The mesh that a call names.
-    pub fn mesh(&mut self, call: &Call) -> Result<Built, Diagnostic> {
-        let usual = "a mesh is a PLY, OBJ or STL file with triangles or polygons";
-        let solid = self.read(call, usual, |path| {
-            let mut mesh = mesh::read_path(path)?;
-            let mut notes = std::mem::take(&mut mesh.notes);
-            let solid = TriangleMesh::new(mesh);
-            let Seams { open, unlike, .. } = solid.seams();
-            if open == 0 && 0 < unlike {
-                notes.push(format!(
-                    "faces disagree at {unlike} edges about which side is out; crossings were counted"
-                ));
-            }
-            Ok((solid, notes))
-        })?;
-        Ok(Built::Exact(Arc::new(solid)))
-    }
-
-    /// The height field that a call names.
-    pub fn heights(&mut self, call: &Call) -> Result<Built, Diagnostic> {
-        let usual = "heights are a PNG or EXR image of at least 2 x 2 pixels";
-        let heights = self.read(call, usual, |path| {
-            let mut heights = heights::read_path(path)?;
-            let notes = std::mem::take(&mut heights.notes);
-            Ok((heights, notes))
-        })?;
-        Ok(Built::Exact(heightfield::build(call, heights)))
     }
 
     /// Whether any material reads the colours of scans; else none is kept.
@@ -358,7 +315,7 @@ fn cloud_complaint(call: &Call, what: &str, e: CloudError) -> Diagnostic {
     file_complaint(call.place("source"), what, e, usual)
 }
 
-fn file_complaint(at: Span, what: &str, e: CloudError, usual: &str) -> Diagnostic {
+pub(super) fn file_complaint(at: Span, what: &str, e: CloudError, usual: &str) -> Diagnostic {
     let (code, fault) = match e.kind {
         CloudFault::Missing => ("E0601", Fault::Missing),
         CloudFault::Bad => ("E0605", Fault::Input),

@@ -77,7 +77,7 @@ fn cut(out: &mut Vec<Crossing>, start: usize, slab: Interval, ends: [u32; 2], mu
     if inside {
         out.insert(start, Crossing::exact(slab.lo, true, ends[0]));
     }
-    if inside != !within.is_multiple_of(2) {
+    if inside == within.is_multiple_of(2) {
         out.push(Crossing::exact(slab.hi, false, ends[1]));
     }
 }
