@@ -11,6 +11,7 @@ mod loose;
 mod magic;
 pub mod neighbours;
 pub mod normals;
+mod open;
 mod order;
 mod peers;
 pub mod ply;
@@ -27,6 +28,7 @@ pub use areas::{AREA_NEIGHBOURS, AREA_REACH, areas};
 pub use duplicates::merge_duplicates;
 pub use error::{CloudError, CloudFault};
 pub use extent::{check_extent, coordinate_step, is_single};
+pub use open::open;
 pub use samples::{NormalSource, SampleOptions, Samples};
 
 /// Points as a file gives them, in the file's own units.

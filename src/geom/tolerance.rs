@@ -11,6 +11,13 @@ pub const CLEANUP: f64 = 16.0;
 /// How many units of `EPS` times the sum of its terms' sizes rounding leaves in a quadratic form of three
 /// coordinates: nine products summed, each with two roundings and at most five additions, halved on the mean.
 pub const FORM: f64 = 4.0;
+/// A sum of a few products of numbers, none above 1 in size, is off by less than this times `EPS`: some ten roundings
+/// and two of sine and cosine, doubled.
+pub const NOISE: f64 = 32.0;
+
+/// A root that lies beyond the end of its piece of boundary by less than this share of the piece is still tried: the
+/// joint with the next piece may lie a rounding away. What is tried in vain costs time only, so the share is generous.
+pub const JOINT: f64 = 1e-6;
 
 /// Default tolerance of a point set surface, relative to the diagonal of its samples.
 pub const POINTS: f64 = 1e-9;
@@ -18,4 +25,9 @@ pub const POINTS: f64 = 1e-9;
 /// The clean-up's thickness for lengths up to `scale`, world length.
 pub fn cleanup(scale: f64) -> f64 {
     CLEANUP * EPS * scale
+}
+
+/// What roundings can make of a short expression whose terms are up to `scale`.
+pub fn noise(scale: f64) -> f64 {
+    NOISE * EPS * scale
 }

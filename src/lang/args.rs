@@ -175,6 +175,8 @@ pub fn wanted(kind: Kind) -> String {
         Kind::Path => "the name of a file".into(),
         Kind::PathOrSolid => "the name of a file or a solid".into(),
         Kind::HalfSpace => "a condition on x, y and z".into(),
+        Kind::Outline => "a list of points, or a list of such lists".into(),
+        Kind::NumberOrPair => "a number or a vector of 2 numbers".into(),
         Kind::LengthOr(words) => format!("a length or one of {}", quoted(words)),
     }
 }

@@ -74,6 +74,9 @@ fn argument(machine: &mut Machine, param: &Param, expr: &Expr) -> Eval<Value> {
             Val::Shape(shape) => Value::Shape(shape),
             _ => path(machine, &given, name, param.kind)?,
         },
+        Kind::Outline => Value::Loops(outline(&given, name)?),
+        Kind::NumberOrPair if matches!(given.value, Val::List(_)) => Value::Vector(given.vector(name, 2)?),
+        Kind::NumberOrPair => Value::Number(given.number(name)?),
         Kind::HalfSpace => return Err(given.unlike(name, &wanted(param.kind)).into()),
     })
 }
@@ -148,6 +151,28 @@ pub fn choice(given: &Located, name: &str, words: &[&str]) -> Eval<String> {
             None => format!("write one of {}", quoted(words)),
         })
         .into())
+}
+
+/// One loop of points, or a list of loops.
+fn outline(given: &Located, name: &str) -> Eval<Vec<Vec<[f64; 2]>>> {
+    let Val::List(list) = &given.value else {
+        let help = "write its corners in order: `[[0, 0], [4, 0], [2, 3]]`";
+        return Err(given.unlike(name, &wanted(Kind::Outline)).help(help).into());
+    };
+    let point = |p: &Located| -> Eval<[f64; 2]> {
+        let v = p.vector(name, 2)?;
+        Ok([v[0], v[1]])
+    };
+    // A list of loops holds lists of lists.
+    let of_lists = |l: &Located| matches!(&l.value, Val::List(l) if l.items.iter().any(|p| matches!(p.value, Val::List(_))));
+    if !list.items.first().is_some_and(of_lists) {
+        return Ok(vec![list.items.iter().map(point).collect::<Eval<_>>()?]);
+    }
+    let one = |l: &Located| match &l.value {
+        Val::List(points) => points.items.iter().map(point).collect::<Eval<Vec<_>>>(),
+        _ => Err(l.unlike(name, "a list of points").help("write a hole as a list of its own").into()),
+    };
+    list.items.iter().map(one).collect()
 }
 
 fn choices(given: &Located, name: &str, words: &[&str], kind: Kind) -> Eval<Vec<String>> {

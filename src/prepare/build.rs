@@ -1,7 +1,7 @@
 //! Solids from calls, and scans from clouds, each built once however often its shape is used.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::fitness::{self, Concern, Fitness};
@@ -16,6 +16,7 @@ use crate::scene::{Call, MaterialId, ShapeNode, Value};
 use crate::shot::Material;
 use crate::solid::point_set::{Options, PointSet, Solidity};
 use crate::solid::{Body, Counts, Solid, points};
+use crate::source::Span;
 
 /// A scan, with what has been found out about it so far.
 #[derive(Debug)]
@@ -107,15 +108,31 @@ impl<'a> Builder<'a> {
             let error = Diagnostic::error("E0402", "`points` needs a file or a solid").at(call.at, "");
             return Err(error.help("write `points(\"scan.ply\")` or `points(sphere(r: 1), samples: 2000)`"));
         };
-        let at = call.place("source");
-        let super::Options { scene_dir, allow_read, cut, .. } = self.options;
-        let path = files::resolve(text, base, *from_command_line, scene_dir, allow_read, at)?;
-        self.inputs.push(path.clone());
-        let cloud =
-            ply::read_path_as(&path, *cut).map_err(|e| cloud_complaint(call, &format!("`{text}`"), e))?;
-        let warning = |note| Diagnostic::warning("W0102", format!("`{text}`: {note}")).at(at, "");
-        self.warnings.extend(cloud.notes.iter().map(warning));
+        let path = self.input(text, base, *from_command_line, call.place("source"))?;
+        let cloud = ply::read_path_as(&path, self.options.cut)
+            .map_err(|e| cloud_complaint(call, &format!("`{text}`"), e))?;
+        self.noted(text, &cloud.notes, call.place("source"));
         Ok(cloud)
+    }
+
+    /// The path to open for a name in a scene, remembered as an input.
+    pub(super) fn input(
+        &mut self,
+        text: &str,
+        base: &Path,
+        given: bool,
+        at: Span,
+    ) -> Result<PathBuf, Diagnostic> {
+        let super::Options { scene_dir, allow_read, .. } = self.options;
+        let path = files::resolve(text, base, given, scene_dir, allow_read, at)?;
+        self.inputs.push(path.clone());
+        Ok(path)
+    }
+
+    /// Warns of what was dropped or mended in a file.
+    pub(super) fn noted(&mut self, text: &str, notes: &[String], at: Span) {
+        let warning = |note| Diagnostic::warning("W0102", format!("`{text}`: {note}")).at(at, "");
+        self.warnings.extend(notes.iter().map(warning));
     }
 
     /// Whether any material reads the colours of scans; else none is kept.
@@ -301,17 +318,22 @@ pub(super) fn exact(
 }
 
 fn cloud_complaint(call: &Call, what: &str, e: CloudError) -> Diagnostic {
+    let usual = "a scan is a PLY file with x, y and z of at least three points that do not lie on a line";
+    file_complaint(call.place("source"), what, e, usual)
+}
+
+pub(super) fn file_complaint(at: Span, what: &str, e: CloudError, usual: &str) -> Diagnostic {
     let (code, fault) = match e.kind {
         CloudFault::Missing => ("E0601", Fault::Missing),
         CloudFault::Bad => ("E0605", Fault::Input),
         CloudFault::Io => ("E0606", Fault::Io),
     };
-    let error = Diagnostic::error(code, format!("{what}: {e}")).at(call.place("source"), "").fault(fault);
+    let error = Diagnostic::error(code, format!("{what}: {e}")).at(at, "").fault(fault);
     let usual = match fault {
         Fault::Missing => {
             "names in a scene start from its folder, those given by `-D name=value` from the working directory"
         }
-        _ => "a scan is a PLY file with x, y and z of at least three points that do not lie on a line",
+        _ => usual,
     };
     error.help(e.help.unwrap_or_else(|| usual.to_owned()))
 }

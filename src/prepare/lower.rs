@@ -139,7 +139,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
         for (part, at) in parts {
             match part {
                 Lowered::Solid(expr) => exprs.push(expr),
-                Lowered::Sheets(_) => return Err(no_inside(op.sign(), at, "a Sheet: an open surface")),
+                Lowered::Sheets(sheets) => return Err(no_inside(op.sign(), at, &words(&sheets))),
             }
         }
         Ok(Lowered::Solid(combined(op, exprs)))
@@ -195,8 +195,9 @@ impl<'b, 'o> Lowering<'b, 'o> {
         let own = Context { wanted: None, edits: None, turned: false, cutter: false, ..context };
         let asked = Context { wanted: Some((".clip", by.at)), material: None, ..own };
         let mut cutter = Lowering::new(self.builder, self.measure_all);
-        let Lowered::Solid(expr) = cutter.lower(&by.shape, asked)? else {
-            return Err(no_inside(".clip", by.at, "a Sheet: an open surface"));
+        let expr = match cutter.lower(&by.shape, asked)? {
+            Lowered::Solid(expr) => expr,
+            Lowered::Sheets(sheets) => return Err(no_inside(".clip", by.at, &words(&sheets))),
         };
         let by = Arc::new(Object::new(cutter.leaves, &expr));
         let mut clipped = Lowering::new(self.builder, self.measure_all);
@@ -270,6 +271,8 @@ impl<'b, 'o> Lowering<'b, 'o> {
         let primitive = table::find(&call.word);
         let built = match primitive.map(|p| p.build) {
             Some(Build::Exact(build)) => exact(call, build)?,
+            Some(Build::Mesh) => self.builder.mesh(call)?,
+            Some(Build::Heights) => self.builder.heights(call)?,
             Some(Build::Points) => {
                 let cloud = match call.get("source") {
                     Some(Value::Shape(solid)) => self.sampled(call, solid)?,
@@ -366,6 +369,11 @@ fn joined_sheets(parts: Vec<(Lowered, Span)>) -> Result<Lowered, Diagnostic> {
         }
     }
     Ok(Lowered::Sheets(sheets))
+}
+
+/// What to say of the first sheet.
+fn words(sheets: &[Leaf]) -> String {
+    sheets.first().map_or_else(String::new, |leaf| leaf.solid.sheet_words())
 }
 
 fn no_inside(sign: &str, at: Span, why: &str) -> Diagnostic {

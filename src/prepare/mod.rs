@@ -1,9 +1,10 @@
 //! A scene made ready to trace: what is drawn is built, placed and bounded; what nothing draws is never touched.
 //!
-//! [`build`] makes solids of calls, [`edits`] and [`offset`] what methods make of them, [`fitness`] doubts
+//! [`build`] makes solids of calls, [`assets`] those of files, [`edits`] and [`offset`] what methods make of them, [`fitness`] doubts
 //! them, [`samples`] takes samples of solids, [`files`] says what may be read, [`lower`]
 //! turns shapes into leaves and one set expression. Text and pixels are left to others.
 
+mod assets;
 mod build;
 mod edits;
 mod extent;

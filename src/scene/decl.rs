@@ -53,6 +53,10 @@ pub enum Kind {
     PathOrSolid,
     /// A linear condition on x, y, z.
     HalfSpace,
+    /// A list of points in a plane, or several such lists.
+    Outline,
+    /// A number, or two.
+    NumberOrPair,
     /// A length or one of these words.
     LengthOr(&'static [&'static str]),
 }

@@ -35,6 +35,8 @@ pub enum Value {
     },
     /// True or false.
     Bool(bool),
+    /// Closed loops of points in a plane.
+    Loops(Vec<Vec<[f64; 2]>>),
     /// A list of texts.
     Texts(Vec<String>),
     /// A shape.
@@ -116,6 +118,14 @@ impl Call {
     pub fn vec2(&self, name: &str) -> Option<[f64; 2]> {
         match self.get(name)? {
             Value::Vector(v) if v.len() == 2 => Some([v[0], v[1]]),
+            _ => None,
+        }
+    }
+
+    /// Closed loops of points.
+    pub fn loops(&self, name: &str) -> Option<&[Vec<[f64; 2]>]> {
+        match self.get(name)? {
+            Value::Loops(loops) => Some(loops),
             _ => None,
         }
     }

@@ -113,7 +113,7 @@ impl World {
         mut go_on: impl FnMut(Hit) -> bool,
     ) -> Option<Hit> {
         let leaf = &self.sheets[index];
-        let range = leaf.bounds.clip(ray).intersect(range);
+        let range = leaf.met(ray).intersect(range);
         let local = leaf.place.ray_to_local(ray);
         let (mut lo, mut last) = (range.lo, None);
         while lo <= range.hi {

@@ -6,12 +6,18 @@ pub mod capsule;
 pub mod cone;
 mod crossing;
 pub mod cylinder;
+pub mod extrude;
 pub mod half_space;
+pub mod heightfield;
+pub mod mesh;
+pub mod outline;
+pub mod parity;
 pub mod plane;
 pub mod point_set;
 pub mod points;
 pub mod quadric;
 pub mod rounded_box;
+pub mod revolve;
 pub mod sphere;
 pub mod superellipsoid;
 pub mod table;
@@ -93,6 +99,11 @@ pub trait Solid: Send + Sync + Debug {
     /// A sheet with a thickness, `by` / 2 to each side (own units); `None` where it has an inside already.
     fn thickened(&self, _by: f64) -> Option<Arc<dyn Solid>> {
         None
+    }
+
+    /// What to say of a sheet where an inside is wanted.
+    fn sheet_words(&self) -> String {
+        "a Sheet: an open surface".into()
     }
 
     /// Whether asking costs much more than a closed form: such solids are asked last.

@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use super::{
-    Solid, block, capsule, cone, cylinder, half_space, plane, points, quadric, sphere, superellipsoid, torus,
-    tube,
+    Solid, block, capsule, cone, cylinder, extrude, half_space, heightfield, mesh, plane, points, quadric,
+    revolve, sphere, superellipsoid, torus, tube,
 };
 use crate::scene::{BuildError, Call, Decl};
 
@@ -14,6 +14,10 @@ use crate::scene::{BuildError, Call, Decl};
 pub enum Build {
     /// From the arguments alone.
     Exact(fn(&Call) -> Result<Arc<dyn Solid>, BuildError>),
+    /// From the triangles of a file.
+    Mesh,
+    /// From the heights of an image file.
+    Heights,
     /// From the samples of a file or of another solid: whoever prepares the scene fetches those.
     Points,
 }
@@ -38,9 +42,13 @@ pub static PRIMITIVES: &[Primitive] = &[
     torus::PRIMITIVE,
     superellipsoid::PRIMITIVE,
     quadric::PRIMITIVE,
+    extrude::PRIMITIVE,
     half_space::PRIMITIVE,
+    heightfield::PRIMITIVE,
+    mesh::PRIMITIVE,
     plane::PRIMITIVE,
     points::PRIMITIVE,
+    revolve::PRIMITIVE,
 ];
 
 /// The declarations of all primitives.

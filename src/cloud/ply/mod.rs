@@ -3,18 +3,19 @@
 //! and no count of a header may be believed before it is compared with the length of the file.
 
 mod columns;
+mod faces;
 mod header;
 mod input;
 mod vertices;
 mod write;
 
-use std::fs::{File, Metadata};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 pub use write::{Encoding, write};
 
-use super::{Cloud, CloudError, check_extent};
+use super::{Cloud, CloudError, check_extent, open};
+pub use faces::{Faces, read as read_faces};
 
 /// What becomes of a file that ends before its last point.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -33,13 +34,8 @@ pub fn read_path(path: &Path) -> Result<Cloud, CloudError> {
 
 /// Reads a PLY file. Only regular files: a pipe or a device could hold up the program for ever.
 pub fn read_path_as(path: &Path, cut: Cut) -> Result<Cloud, CloudError> {
-    let metadata = std::fs::metadata(path).map_err(|e| CloudError::missing(format!("cannot open: {e}")))?;
-    regular(&metadata)?;
-    let file = File::open(path).map_err(|e| CloudError::missing(format!("cannot open: {e}")))?;
-    // Asked again of what was opened: the name may have changed hands.
-    let metadata = file.metadata()?;
-    regular(&metadata)?;
-    read_from(BufReader::with_capacity(1 << 16, file), metadata.len(), cut)
+    let (file, length) = open(path, "name a PLY file")?;
+    read_from(BufReader::with_capacity(1 << 16, file), length, cut)
 }
 
 /// Reads a whole PLY file that is in memory.
@@ -54,12 +50,4 @@ pub fn read_from(stream: impl BufRead, length: u64, cut: Cut) -> Result<Cloud, C
     let cloud = vertices::read(&mut input, &header, cut)?;
     check_extent(&cloud.points)?;
     Ok(cloud)
-}
-
-fn regular(metadata: &Metadata) -> Result<(), CloudError> {
-    if metadata.is_file() {
-        return Ok(());
-    }
-    let what = if metadata.is_dir() { "a directory" } else { "no regular file" };
-    Err(CloudError::missing(format!("this is {what}")).help("name a PLY file"))
 }

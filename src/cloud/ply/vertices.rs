@@ -228,7 +228,7 @@ fn ascii_row(text: &str, vertex: &Element, columns: &mut Columns) -> Result<(), 
 }
 
 /// A number of an ASCII body. What Microsoft's runtime prints for no number counts as one.
-fn number(word: &str, name: &str) -> Result<f64, CloudError> {
+pub fn number(word: &str, name: &str) -> Result<f64, CloudError> {
     if let Ok(value) = word.parse() {
         return Ok(value);
     }

@@ -1,0 +1,30 @@
+//! Meshes and what a ray finds of them.
+#![allow(dead_code, missing_docs)]
+
+use glam::DVec3;
+use pss::geom::{Aabb, Interval, Ray};
+use pss::mesh::Mesh;
+use pss::solid::mesh::TriangleMesh;
+use pss::solid::{Crossing, Scratch, Solid};
+
+pub fn crossings(solid: &dyn Solid, ray: &Ray) -> Vec<Crossing> {
+    let mut out = Vec::new();
+    solid.crossings(ray, Interval::ALL, &mut Scratch::default(), &mut out);
+    assert!(out.len().is_multiple_of(2), "{out:?} {ray:?}");
+    for (i, c) in out.iter().enumerate() {
+        assert!(c.t.is_finite() && c.entering == (i % 2 == 0), "{out:?} {ray:?}");
+    }
+    assert!(out.windows(2).all(|w| w[0].t < w[1].t), "{out:?} {ray:?}");
+    out
+}
+
+pub fn made(points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> TriangleMesh {
+    TriangleMesh::new(Mesh { points, triangles, notes: Vec::new() })
+}
+
+pub fn cube(low: DVec3, high: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let points = Aabb { min: low, max: high }.corners().to_vec();
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    (points, triangles)
+}
