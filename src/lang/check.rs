@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use super::args::{Callee, formals, quoted, wanted};
 use super::ast::{Args, Expr};
 use super::eval::Machine;
-use super::half_space;
 use super::value::{Eval, Located, Val};
+use super::{formula, half_space};
 use crate::diag::{Diagnostic, nearest};
 use crate::scene::{Arg, Call, Decl, Kind, Param, Value};
 use crate::source::Span;
@@ -35,6 +35,9 @@ fn argument(machine: &mut Machine, param: &Param, expr: &Expr) -> Eval<Value> {
     if param.kind == Kind::HalfSpace {
         let (normal, offset) = half_space::read(machine, expr)?;
         return Ok(Value::HalfSpace { normal, offset });
+    }
+    if param.kind == Kind::Condition {
+        return Ok(Value::Formula(formula::read(machine, expr)?.into()));
     }
     let given = machine.located(expr)?;
     let name = param.name;
@@ -70,7 +73,8 @@ fn argument(machine: &mut Machine, param: &Param, expr: &Expr) -> Eval<Value> {
             Val::Shape(shape) => Value::Shape(shape),
             _ => path(machine, &given, name, param.kind)?,
         },
-        Kind::HalfSpace => return Err(given.unlike(name, &wanted(param.kind)).into()),
+        Kind::Solid => Value::Shape(given.shape(name)?.clone()),
+        Kind::HalfSpace | Kind::Condition => return Err(given.unlike(name, &wanted(param.kind)).into()),
     })
 }
 

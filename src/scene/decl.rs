@@ -49,6 +49,10 @@ pub enum Kind {
     PathOrSolid,
     /// A linear condition on x, y, z.
     HalfSpace,
+    /// A condition on x, y, z.
+    Condition,
+    /// A solid.
+    Solid,
     /// A length or one of these words.
     LengthOr(&'static [&'static str]),
 }
