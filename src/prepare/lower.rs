@@ -7,6 +7,8 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::build::{Builder, Built, exact};
 use super::edits::{Change, Edit, Edits, Stage, edits};
+use super::limits;
+use super::outline::{Cutting, Outline, Piece};
 use super::samples::{Sampling, sample};
 use crate::cloud::Cloud;
 use crate::csg::{Clipped, Clippee, Expr, Leaf, Object};
@@ -33,6 +35,8 @@ pub(super) struct Lowering<'b, 'o> {
     pub leaves: Vec<Leaf>,
     /// Sheets drawn.
     pub sheets: Vec<Leaf>,
+    /// Where the leaves, and what cuts them, were written.
+    pub outline: Outline,
 }
 
 /// What a node inherits from above.
@@ -40,6 +44,8 @@ pub(super) struct Lowering<'b, 'o> {
 struct Context<'a> {
     world_from_local: DAffine3,
     material: Option<MaterialId>,
+    /// What cutters wear that have no material.
+    cut: Option<MaterialId>,
     cutter: bool,
     /// Whether an odd number of complements stands above: what grows the whole shrinks this.
     turned: bool,
@@ -52,6 +58,7 @@ struct Context<'a> {
 const TOP: Context = Context {
     world_from_local: DAffine3::IDENTITY,
     material: None,
+    cut: None,
     cutter: false,
     turned: false,
     wanted: None,
@@ -67,11 +74,12 @@ enum Lowered {
 impl<'b, 'o> Lowering<'b, 'o> {
     /// Nothing gathered yet.
     pub fn new(builder: &'b mut Builder<'o>, measure_all: bool) -> Lowering<'b, 'o> {
-        Lowering { builder, measure_all, leaves: Vec::new(), sheets: Vec::new() }
+        Lowering { builder, measure_all, leaves: Vec::new(), sheets: Vec::new(), outline: Outline::default() }
     }
 
     /// Lowers what is drawn.
     pub fn draw(&mut self, shape: &Shape) -> Result<Drawn, Diagnostic> {
+        limits::check_count(shape)?;
         let bounds = self.extent(shape, &DAffine3::IDENTITY)?;
         let solid = match self.lower(shape, TOP)? {
             Lowered::Solid(expr) => Some(expr),
@@ -99,6 +107,9 @@ impl<'b, 'o> Lowering<'b, 'o> {
                 // The innermost `.with` is nearest to the leaf; an outer one leaves it alone.
                 self.lower(child, Context { material: Some(*material), ..context })
             }
+            ShapeKind::Cut { material, child } => {
+                self.lower(child, Context { cut: Some(*material), ..context })
+            }
             ShapeKind::Close { max_hole, child } => {
                 self.edited(shape, Change::Close(max_hole.unwrap_or(f64::INFINITY)), child, context)
             }
@@ -120,17 +131,22 @@ impl<'b, 'o> Lowering<'b, 'o> {
             edit.check_through(op, context.turned, shape.0.at)?;
         }
         let mut parts = Vec::with_capacity(operands.len());
+        let mut cut = self.begin_cut(op);
         for (i, operand) in operands.iter().enumerate() {
             let taken = op == BooleanOp::Complement || (op == BooleanOp::Difference && 0 < i);
             let context = Context {
                 cutter: context.cutter || taken,
                 turned: context.turned != taken,
-                // A cutter keeps its own material or shows the base's: `.with` above stops here.
-                material: if taken { None } else { context.material },
+                // A cutter keeps its own material, has that of `.cut`, or shows the base's: `.with` above stops here.
+                material: if taken { context.cut } else { context.material },
                 wanted: Some((op.sign(), operand.at)),
                 ..context
             };
+            let first = self.leaves.len() as u32;
             parts.push((self.lower(&operand.shape, context)?, operand.at));
+            if let Some(cut) = &mut cut {
+                self.add_to_cut(*cut, taken, operand.at, first);
+            }
         }
         if op == BooleanOp::Union && parts.iter().any(|p| matches!(p.0, Lowered::Sheets(_))) {
             return joined_sheets(parts);
@@ -143,6 +159,25 @@ impl<'b, 'o> Lowering<'b, 'o> {
             }
         }
         Ok(Lowered::Solid(combined(op, exprs)))
+    }
+
+    /// Makes room in the outline for what an operator takes away, before that of its operands.
+    fn begin_cut(&mut self, op: BooleanOp) -> Option<usize> {
+        let cuts = &mut self.outline.cuts;
+        matches!(op, BooleanOp::Difference | BooleanOp::Complement).then(|| {
+            cuts.push(Cutting { base: None, cutters: Vec::new() });
+            cuts.len() - 1
+        })
+    }
+
+    /// Adds an operand, whose leaves begin at `first`.
+    fn add_to_cut(&mut self, cut: usize, taken: bool, at: Span, first: u32) {
+        let piece = Piece { at, leaves: first..self.leaves.len() as u32 };
+        let cut = &mut self.outline.cuts[cut];
+        match taken {
+            true => cut.cutters.push(piece),
+            false => cut.base = Some(piece),
+        }
     }
 
     fn leaf(
@@ -167,7 +202,26 @@ impl<'b, 'o> Lowering<'b, 'o> {
             return Ok(Lowered::Sheets(vec![leaf]));
         }
         self.leaves.push(leaf);
-        Ok(Lowered::Solid(Expr::Leaf(self.leaves.len() as u32 - 1)))
+        self.outline.calls.push(call.at);
+        let own = Expr::Leaf(self.leaves.len() as u32 - 1);
+        let Some((by, bounding)) = bounded_by(call) else { return Ok(Lowered::Solid(own)) };
+        let at = call.place(by);
+        match self.lower(bounding, Context { wanted: Some((by, at)), edits: None, ..context })? {
+            Lowered::Solid(expr) => Ok(Lowered::Solid(Expr::And(vec![own, expr]))),
+            Lowered::Sheets(_) => Err(no_inside(by, at, "a Sheet: an open surface")),
+        }
+    }
+
+    /// The box around the solid that bounds another.
+    fn bounding_box(&mut self, call: &Call, by: &str) -> Result<Aabb, Diagnostic> {
+        let Some(Value::Shape(bounding)) = call.get(by) else { return Ok(Aabb::EMPTY) };
+        let bounds = self.extent(bounding, &DAffine3::IDENTITY)?;
+        if bounds.is_finite() || bounds.is_empty() {
+            return Ok(bounds);
+        }
+        let error = Diagnostic::error("E0305", format!("`{by}` has no finite bounds"));
+        let error = error.at(call.place(by), "unbounded");
+        Err(error.help("bound the formula by a bounded solid, such as `inside: box(size: 100)`"))
     }
 
     /// A node that changes the leaves below it.
@@ -270,6 +324,10 @@ impl<'b, 'o> Lowering<'b, 'o> {
         let primitive = table::find(&call.word);
         let built = match primitive.map(|p| p.build) {
             Some(Build::Exact(build)) => exact(call, build)?,
+            Some(Build::Bounded { by, build }) => {
+                let bounds = self.bounding_box(call, by)?;
+                exact(call, |call| build(call, &bounds))?
+            }
             Some(Build::Points) => {
                 let cloud = match call.get("source") {
                     Some(Value::Shape(solid)) => self.sampled(call, solid)?,
@@ -330,6 +388,15 @@ impl<'b, 'o> Lowering<'b, 'o> {
         }
         let bottom = DVec3::new(bounds.center().x, bounds.center().y, bounds.min.z);
         Ok(DAffine3 { matrix3: DMat3::from_diagonal(DVec3::splat(scale)), translation: *at - scale * bottom })
+    }
+}
+
+/// The solid that bounds the one of a call, with the name of the argument.
+pub(super) fn bounded_by(call: &Call) -> Option<(&'static str, &Shape)> {
+    let Build::Bounded { by, .. } = table::find(&call.word)?.build else { return None };
+    match call.get(by)? {
+        Value::Shape(shape) => Some((by, shape)),
+        _ => None,
     }
 }
 

@@ -3,7 +3,8 @@
 
 use std::sync::Arc;
 
-use super::{Solid, block, cylinder, half_space, plane, points, sphere};
+use super::{Solid, block, cylinder, half_space, implicit, plane, points, sphere};
+use crate::geom::Aabb;
 use crate::scene::{BuildError, Call, Decl};
 
 /// How a primitive is made.
@@ -11,6 +12,13 @@ use crate::scene::{BuildError, Call, Decl};
 pub enum Build {
     /// From the arguments alone.
     Exact(fn(&Call) -> Result<Arc<dyn Solid>, BuildError>),
+    /// From the arguments and the box around another solid, which bounds it: the two are intersected.
+    Bounded {
+        /// The argument that is the other solid.
+        by: &'static str,
+        /// Its maker, given the box.
+        build: fn(&Call, &Aabb) -> Result<Arc<dyn Solid>, BuildError>,
+    },
     /// From the samples of a file or of another solid: whoever prepares the scene fetches those.
     Points,
 }
@@ -30,6 +38,7 @@ pub static PRIMITIVES: &[Primitive] = &[
     sphere::PRIMITIVE,
     cylinder::PRIMITIVE,
     half_space::PRIMITIVE,
+    implicit::PRIMITIVE,
     plane::PRIMITIVE,
     points::PRIMITIVE,
 ];
