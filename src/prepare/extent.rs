@@ -2,7 +2,8 @@
 
 use glam::DAffine3;
 
-use super::lower::{Lowering, bounded_by};
+use super::bounding::bounded_by;
+use super::lower::Lowering;
 use crate::diag::Diagnostic;
 use crate::geom::Aabb;
 use crate::scene::{BooleanOp, Operand, Shape, ShapeKind};

@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::bounding::bounded_by;
 use super::build::{Builder, Built, exact};
 use super::edits::{Change, Edit, Edits, Stage, edits};
 use super::limits;
-use super::outline::{Cutting, Outline, Piece};
+use super::outline::Outline;
 use super::samples::{Sampling, sample};
 use crate::cloud::Cloud;
 use crate::csg::{Clipped, Clippee, Expr, Leaf, Object};
@@ -131,7 +132,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
             edit.check_through(op, context.turned, shape.0.at)?;
         }
         let mut parts = Vec::with_capacity(operands.len());
-        let mut cut = self.begin_cut(op);
+        let mut cut = self.outline.begin_cut(op);
         for (i, operand) in operands.iter().enumerate() {
             let taken = op == BooleanOp::Complement || (op == BooleanOp::Difference && 0 < i);
             let context = Context {
@@ -145,7 +146,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
             let first = self.leaves.len() as u32;
             parts.push((self.lower(&operand.shape, context)?, operand.at));
             if let Some(cut) = &mut cut {
-                self.add_to_cut(*cut, taken, operand.at, first);
+                self.outline.add_to_cut(*cut, taken, operand.at, first..self.leaves.len() as u32);
             }
         }
         if op == BooleanOp::Union && parts.iter().any(|p| matches!(p.0, Lowered::Sheets(_))) {
@@ -159,25 +160,6 @@ impl<'b, 'o> Lowering<'b, 'o> {
             }
         }
         Ok(Lowered::Solid(combined(op, exprs)))
-    }
-
-    /// Makes room in the outline for what an operator takes away, before that of its operands.
-    fn begin_cut(&mut self, op: BooleanOp) -> Option<usize> {
-        let cuts = &mut self.outline.cuts;
-        matches!(op, BooleanOp::Difference | BooleanOp::Complement).then(|| {
-            cuts.push(Cutting { base: None, cutters: Vec::new() });
-            cuts.len() - 1
-        })
-    }
-
-    /// Adds an operand, whose leaves begin at `first`.
-    fn add_to_cut(&mut self, cut: usize, taken: bool, at: Span, first: u32) {
-        let piece = Piece { at, leaves: first..self.leaves.len() as u32 };
-        let cut = &mut self.outline.cuts[cut];
-        match taken {
-            true => cut.cutters.push(piece),
-            false => cut.base = Some(piece),
-        }
     }
 
     fn leaf(
@@ -210,18 +192,6 @@ impl<'b, 'o> Lowering<'b, 'o> {
             Lowered::Solid(expr) => Ok(Lowered::Solid(Expr::And(vec![own, expr]))),
             Lowered::Sheets(_) => Err(no_inside(by, at, "a Sheet: an open surface")),
         }
-    }
-
-    /// The box around the solid that bounds another.
-    fn bounding_box(&mut self, call: &Call, by: &str) -> Result<Aabb, Diagnostic> {
-        let Some(Value::Shape(bounding)) = call.get(by) else { return Ok(Aabb::EMPTY) };
-        let bounds = self.extent(bounding, &DAffine3::IDENTITY)?;
-        if bounds.is_finite() || bounds.is_empty() {
-            return Ok(bounds);
-        }
-        let error = Diagnostic::error("E0305", format!("`{by}` has no finite bounds"));
-        let error = error.at(call.place(by), "unbounded");
-        Err(error.help("bound the formula by a bounded solid, such as `inside: box(size: 100)`"))
     }
 
     /// A node that changes the leaves below it.
@@ -388,15 +358,6 @@ impl<'b, 'o> Lowering<'b, 'o> {
         }
         let bottom = DVec3::new(bounds.center().x, bounds.center().y, bounds.min.z);
         Ok(DAffine3 { matrix3: DMat3::from_diagonal(DVec3::splat(scale)), translation: *at - scale * bottom })
-    }
-}
-
-/// The solid that bounds the one of a call, with the name of the argument.
-pub(super) fn bounded_by(call: &Call) -> Option<(&'static str, &Shape)> {
-    let Build::Bounded { by, .. } = table::find(&call.word)?.build else { return None };
-    match call.get(by)? {
-        Value::Shape(shape) => Some((by, shape)),
-        _ => None,
     }
 }
 

@@ -4,6 +4,7 @@
 //! them, [`samples`] takes samples of solids, [`files`] says what may be read, [`lower`]
 //! turns shapes into leaves and one set expression. Text and pixels are left to others.
 
+mod bounding;
 mod build;
 mod edits;
 mod extent;

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::csg::Expr;
 use crate::geom::Aabb;
+use crate::scene::BooleanOp;
 use crate::source::Span;
 
 /// The places of a world's solids.
@@ -46,4 +47,23 @@ pub struct Piece {
     pub at: Span,
     /// The leaves it was made of.
     pub leaves: Range<u32>,
+}
+
+impl Outline {
+    /// Makes room for what an operator takes away, before that of its operands.
+    pub(super) fn begin_cut(&mut self, op: BooleanOp) -> Option<usize> {
+        matches!(op, BooleanOp::Difference | BooleanOp::Complement).then(|| {
+            self.cuts.push(Cutting { base: None, cutters: Vec::new() });
+            self.cuts.len() - 1
+        })
+    }
+
+    /// Adds an operand.
+    pub(super) fn add_to_cut(&mut self, cut: usize, taken: bool, at: Span, leaves: Range<u32>) {
+        let (cut, piece) = (&mut self.cuts[cut], Piece { at, leaves });
+        match taken {
+            true => cut.cutters.push(piece),
+            false => cut.base = Some(piece),
+        }
+    }
 }

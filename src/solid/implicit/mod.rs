@@ -1,9 +1,11 @@
 //! Implicit solids: the points of a bounded shape where a formula of x, y and z is at most zero.
 //!
-//! [`tape`] evaluates the formula, [`roots`] finds where it changes sign along a ray. The solid ends where the box around
+//! [`tape`] evaluates the formula, [`roots`] finds where it changes sign along a ray, [`stretches`] asks it only for the part
+//! of the ray that is asked about. The solid ends where the box around
 //! the bounding shape ends; that it ends at the shape itself is left to set algebra.
 
 mod roots;
+mod stretches;
 mod tape;
 
 use std::sync::Arc;
@@ -17,6 +19,7 @@ use crate::geom::{Aabb, Interval, Ray, tolerance};
 use crate::scene::{BuildError, Call, Decl, Formula, Group, Kind, Param, Value};
 
 use roots::Line;
+use stretches::Stretches;
 pub use tape::Room;
 
 /// The line of the table.
@@ -57,7 +60,7 @@ pub struct Implicit {
     traced: Aabb,
 }
 
-/// Parts below this are faces of the box, numbered as [`Block`] does; this one is the formula's own surface.
+/// Parts of the boundary below this are faces of the box, numbered as [`Block`] does; this one is the formula's own surface.
 const SURFACE: u32 = 6;
 
 impl Implicit {
@@ -80,8 +83,8 @@ impl Solid for Implicit {
         self.bounds.transformed(to_from)
     }
 
-    /// The ray's part in the box, its parameter counted from the middle of that part, so that a far origin costs nothing
-    /// but what its own rounding costs; in it all changes of sign. The box ends the solid where the formula holds there.
+    /// Stretches of the ray's part in the box, from where the range begins until one with a crossing is done: see
+    /// [`Stretches`].
     fn crossings(
         &self,
         ray: &Ray,
@@ -89,33 +92,28 @@ impl Solid for Implicit {
         scratch: &mut Scratch,
         out: &mut Vec<Crossing>,
     ) -> Answer {
-        let outside = Answer::whole_line(false);
         let first = out.len();
         Block(self.traced).crossings(ray, range, scratch, out);
-        let &[enter, exit] = &out[first..] else { return outside };
+        let &[enter, exit] = &out[first..] else { return Answer::whole_line(false) };
         out.truncate(first);
+        if exit.t <= range.lo {
+            return Answer { inside: false, range: Interval::new(range.lo, f64::INFINITY) };
+        }
         let mut room = std::mem::take(&mut scratch.implicit);
         let mut roots = std::mem::take(&mut room.roots);
-        roots.clear();
-        let middle = 0.5 * (enter.t + exit.t);
-        let (lo, hi) = (enter.t - middle, exit.t - middle);
-        let mut line = Line { formula: &self.formula, origin: ray.at(middle), dir: ray.dir, room: &mut room };
-        scratch.counts.certificate_failures += line.isolate(lo, hi, &mut roots);
-        let ends = [line.inside(lo), line.inside(hi)];
-        if ends[0] {
-            out.push(enter);
-        }
-        for root in &roots {
-            let t = (middle + root.s).clamp(enter.t, exit.t);
-            let crossing = Crossing { err: root.err, ..Crossing::exact(t, root.entering, SURFACE) };
-            push(out, first, crossing);
-        }
-        if ends[1] {
-            push(out, first, exit);
-        }
+        let stretches = Stretches::new(enter, exit, range);
+        let mut line = Line {
+            formula: &self.formula,
+            origin: ray.at(stretches.middle),
+            dir: ray.dir,
+            room: &mut room,
+            failures: 0,
+        };
+        let answer = stretches.answer(&mut line, &mut roots, out);
+        scratch.counts.certificate_failures += line.failures;
         room.roots = roots;
         scratch.implicit = room;
-        outside
+        answer
     }
 
     /// The gradient of the formula, turned so that it points out as the crossing says: at a pole, and where the domain of
@@ -139,14 +137,4 @@ impl Solid for Implicit {
 /// A vector of any length as a unit vector.
 fn unit(v: DVec3) -> DVec3 {
     (v / v.abs().max_element()).normalize_or_zero()
-}
-
-/// Appends a crossing; two at one place are none.
-fn push(out: &mut Vec<Crossing>, first: usize, crossing: Crossing) {
-    match out[first..].last() {
-        Some(last) if crossing.t <= last.t => {
-            out.pop();
-        }
-        _ => out.push(crossing),
-    }
 }

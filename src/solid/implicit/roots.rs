@@ -19,8 +19,8 @@ use crate::geom::tolerance;
 use crate::num::enclosure::Enclosure;
 use crate::scene::Formula;
 
-/// The most parts that are looked at on one ray; what is left then is undecided.
-const MAX_CELLS: usize = 1 << 14;
+/// The most parts that are looked at in one stretch; what is left then is undecided.
+const MAX_CELLS: usize = 1 << 11;
 
 /// A change of sign.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -39,6 +39,8 @@ pub(super) struct Line<'a> {
     pub origin: DVec3,
     pub dir: DVec3,
     pub room: &'a mut Room,
+    /// How many parts were undecided so far.
+    pub failures: u64,
 }
 
 /// What is known of a part.
@@ -116,14 +118,20 @@ impl Line<'_> {
         }
     }
 
-    /// Appends all changes of sign between `lo` and `hi` to `out`, ascending; returns how many parts were undecided.
-    pub fn isolate(&mut self, lo: f64, hi: f64, out: &mut Vec<Root>) -> u64 {
+    /// Appends all changes of sign between `lo` and `hi` to `out`, ascending; parts no longer than `shortest` are not
+    /// divided. `undecided` is a part that ended undecided where this one begins, and afterwards one that does so where it
+    /// ends. Returns whether it begins with an undecided part.
+    pub fn isolate(
+        &mut self,
+        [lo, hi]: [f64; 2],
+        shortest: f64,
+        undecided: &mut Option<[f64; 2]>,
+        out: &mut Vec<Root>,
+    ) -> bool {
         let mut cells = std::mem::take(&mut self.room.cells);
         cells.clear();
         cells.push((lo, hi));
-        let shortest = tolerance::STRETCH * lo.abs().max(hi.abs());
-        let (mut looked, mut failures) = (0, 0);
-        let mut undecided: Option<(f64, f64)> = None;
+        let (mut looked, mut doubtful) = (0, false);
         while let Some((a, b)) = cells.pop() {
             looked += 1;
             let m = 0.5 * (a + b);
@@ -135,26 +143,27 @@ impl Line<'_> {
                     continue;
                 }
                 Found::Open | Found::Undecided => {
-                    undecided = Some((undecided.map_or(a, |u| u.0), b));
+                    doubtful |= a == lo;
+                    *undecided = Some([undecided.map_or(a, |u| u[0]), b]);
                     continue;
                 }
                 _ => {}
             }
-            failures += self.close(undecided.take(), out);
+            self.close(undecided.take(), out);
             if let Found::Monotone(rate) = found {
                 self.change(a, b, Some(rate), out);
             }
         }
-        failures += self.close(undecided, out);
         self.room.cells = cells;
-        failures
+        doubtful
     }
 
     /// Ends an undecided part.
-    fn close(&mut self, part: Option<(f64, f64)>, out: &mut Vec<Root>) -> u64 {
-        let Some((a, b)) = part else { return 0 };
-        self.change(a, b, None, out);
-        1
+    pub fn close(&mut self, part: Option<[f64; 2]>, out: &mut Vec<Root>) {
+        if let Some([a, b]) = part {
+            self.failures += 1;
+            self.change(a, b, None, out);
+        }
     }
 
     /// The change of sign between two places, if there is one.
