@@ -7,6 +7,9 @@ use super::{Solid, block, cylinder, half_space, implicit, plane, points, sphere}
 use crate::geom::Aabb;
 use crate::scene::{BuildError, Call, Decl};
 
+/// A solid, or why there is none.
+pub type Made = Result<Arc<dyn Solid>, BuildError>;
+
 /// How a primitive is made.
 #[derive(Clone, Copy, Debug)]
 pub enum Build {
@@ -17,7 +20,7 @@ pub enum Build {
         /// The argument that is the other solid.
         by: &'static str,
         /// Its maker, given the box.
-        build: fn(&Call, &Aabb) -> Result<Arc<dyn Solid>, BuildError>,
+        build: fn(&Call, &Aabb) -> Made,
     },
     /// From the samples of a file or of another solid: whoever prepares the scene fetches those.
     Points,

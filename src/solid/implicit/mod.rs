@@ -55,7 +55,8 @@ fn build(call: &Call, bounds: &Aabb) -> Result<Arc<dyn Solid>, BuildError> {
 #[derive(Clone, Debug)]
 pub struct Implicit {
     formula: Arc<Formula>,
-    bounds: Aabb,
+    /// The box around what bounds it.
+    asked: Aabb,
     /// The box in which it is traced: a little larger, see [`tolerance::MARGIN`].
     traced: Aabb,
 }
@@ -70,7 +71,7 @@ impl Implicit {
             true => bounds.inflated(tolerance::MARGIN * bounds.size().max_element()),
             false => Aabb::EMPTY,
         };
-        Implicit { formula, bounds, traced }
+        Implicit { formula, asked: bounds, traced }
     }
 }
 
@@ -80,7 +81,7 @@ impl Solid for Implicit {
     }
 
     fn extent_under(&self, to_from: &DAffine3) -> Aabb {
-        self.bounds.transformed(to_from)
+        self.asked.transformed(to_from)
     }
 
     /// Stretches of the ray's part in the box, from where the range begins until one with a crossing is done: see
