@@ -54,7 +54,7 @@ fn crossings(solid: &dyn Solid, ray: &Ray) -> Vec<Crossing> {
         assert!(c.t.is_finite() && c.entering == (i % 2 == 0), "{ray:?} {out:?}");
         assert!(i == 0 || out[i - 1].t < c.t, "{ray:?} {out:?}");
     }
-    assert!(out.len() % 2 == 0, "{ray:?} {out:?}");
+    assert!(out.len().is_multiple_of(2), "{ray:?} {out:?}");
     out
 }
 
@@ -174,7 +174,7 @@ fn a_tangent_gives_no_span_and_is_counted() {
         let out = crossings(&sphere, &along_x(y, z));
         sphere.crossings(&along_x(y, z), Interval::ALL, &mut scratch, &mut Vec::new());
         let thin = out.chunks(2).all(|c| (c[1].t - c[0].t) < 1e-7);
-        assert!(thin && out.len() % 2 == 0, "{y} {z} {out:?}");
+        assert!(thin && out.len().is_multiple_of(2), "{y} {z} {out:?}");
     }
     assert_eq!(ts(&sphere, &along_x(1.0, 0.0)), NOTHING);
     assert!(0 < scratch.counts.certificate_failures);
