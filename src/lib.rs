@@ -19,6 +19,7 @@
 //! counts multiples of its direction, which is never normalised, so `t` survives affine maps. Angles are
 //! radians, pixels are counted from the top left.
 
+pub mod check;
 pub mod cloud;
 pub mod csg;
 pub mod diag;

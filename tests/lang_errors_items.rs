@@ -42,7 +42,7 @@ error[E0503]: `a` is outside of what it allows
 }
 
 says! {
-    what_is_not_there_yet_says_so: "fn f(x) = x * 2\nimport \"a.pss\" as b\nprint 3\nexpect 1 < 2\nlet a = for i in 0..3 { i }\nlet b = if true { 1 } else { 2 }\n@ghost draw sphere(r: 1)\nlet c = sphere(r: 1).mirror([1, 0, 0])\n",
+    what_is_not_there_yet_says_so: "fn f(x) = x * 2\nimport \"a.pss\" as b\nprint 3\nexpect 1 < 2\nlet a = for i in 0..3 { i }\nlet b = if true { 1 } else { 2 }\n@ghost draw sphere(r: 1)\nlet c = volume(sphere(r: 1))\n",
     r#"
 error[E0702]: `fn` is not supported yet
  --> scene.pss:1:1
@@ -86,11 +86,11 @@ error[E0702]: `@ghost` is not supported yet
   |  ^^^^^ understood, but not carried out
   = help: write the scene without it, or wait for a later version
 
-error[E0702]: `mirror` is not supported yet
- --> scene.pss:8:22
+error[E0702]: `volume` is not supported yet
+ --> scene.pss:8:9
   |
-8 | let c = sphere(r: 1).mirror([1, 0, 0])
-  |                      ^^^^^^ understood, but not carried out
+8 | let c = volume(sphere(r: 1))
+  |         ^^^^^^ understood, but not carried out
   = help: write the scene without it, or wait for a later version
 "#
 }

@@ -41,6 +41,7 @@ fn leaf(shape: &Shape) -> (&Call, &str) {
         ShapeKind::Transform { child, .. }
         | ShapeKind::Fit { child, .. }
         | ShapeKind::With { child, .. }
+        | ShapeKind::Cut { child, .. }
         | ShapeKind::Close { child, .. }
         | ShapeKind::Thicken { child, .. }
         | ShapeKind::Offset { child, .. }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::geom::{Aabb, Placement, tolerance};
+use crate::geom::{Aabb, Interval, Placement, Ray, tolerance};
 use crate::solid::Solid;
 
 /// A solid, placed, as an operand.
@@ -50,6 +50,12 @@ impl Leaf {
             return Aabb::EMPTY;
         }
         self.bounds.inflated(tolerance::cleanup(self.scale()) * self.place.condition)
+    }
+
+    /// The part of a ray's line that can meet the leaf.
+    pub fn met(&self, ray: &Ray) -> Interval {
+        let far = tolerance::cleanup(ray.origin.length()) * self.place.condition;
+        self.grown().inflated(far).clip(ray)
     }
 
     /// Who owns a face that several leaves share: the smallest key.

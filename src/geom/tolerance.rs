@@ -31,3 +31,18 @@ pub fn cleanup(scale: f64) -> f64 {
 pub fn noise(scale: f64) -> f64 {
     NOISE * EPS * scale
 }
+/// How far, in units in the last place, a function of `libm` may be from its value. Its sources give less than one for most
+/// and two for `atan2`; four leaves a factor of two.
+pub const LIBM_ULPS: u32 = 4;
+
+/// A stretch of a ray so short, against the part of the ray that is asked about, is not divided any more when the roots of
+/// an implicit surface are isolated: points on it differ by a few units in the last place.
+pub const STRETCH: f64 = 4.0 * EPS;
+
+/// By this share of its size the box in which an implicit surface is traced stands out of the box that holds it, so that
+/// no face of the former meets one of the latter. A power of two, so that scaling keeps the bits.
+pub const MARGIN: f64 = 1.0 / (1u64 << 20) as f64;
+
+/// Where the values of a formula over a stretch of a ray spread no wider than this many times what rounding spreads its
+/// value at one point of it, dividing the stretch tells nothing more.
+pub const FLAT: f64 = 8.0;

@@ -174,9 +174,10 @@ pub fn wanted(kind: Kind) -> String {
         Kind::Bool => "`true` or `false`".into(),
         Kind::Path => "the name of a file".into(),
         Kind::PathOrSolid => "the name of a file or a solid".into(),
-        Kind::HalfSpace => "a condition on x, y and z".into(),
         Kind::Outline => "a list of points, or a list of such lists".into(),
         Kind::NumberOrPair => "a number or a vector of 2 numbers".into(),
+        Kind::HalfSpace | Kind::Condition => "a condition on x, y and z".into(),
+        Kind::Solid => "a solid".into(),
         Kind::LengthOr(words) => format!("a length or one of {}", quoted(words)),
     }
 }

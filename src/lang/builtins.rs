@@ -33,7 +33,5 @@ pub fn functions() -> impl Iterator<Item = &'static Builtin> {
 }
 
 /// Words of the language that are not carried out yet.
-pub const LATER: &[&str] = &[
-    "mirror", "matrix", "array", "around", "instance", "cut", "bounds", "inside", "volume", "area",
-    "centroid", "empty", "solid", "raycast", "rand", "count", "implicit",
-];
+pub const LATER: &[&str] =
+    &["bounds", "inside", "volume", "area", "centroid", "empty", "solid", "raycast", "rand", "count"];

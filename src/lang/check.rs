@@ -8,8 +8,8 @@ use glam::DVec3;
 use super::args::{Callee, formals, quoted, wanted};
 use super::ast::{Args, Expr};
 use super::eval::Machine;
-use super::half_space;
 use super::value::{Eval, Located, Val};
+use super::{formula, half_space};
 use crate::diag::{Diagnostic, nearest};
 use crate::scene::{Arg, Call, Decl, Kind, Param, Value};
 use crate::source::Span;
@@ -37,6 +37,9 @@ fn argument(machine: &mut Machine, param: &Param, expr: &Expr) -> Eval<Value> {
     if param.kind == Kind::HalfSpace {
         let (normal, offset) = half_space::read(machine, expr)?;
         return Ok(Value::HalfSpace { normal, offset });
+    }
+    if param.kind == Kind::Condition {
+        return Ok(Value::Formula(formula::read(machine, expr)?.into()));
     }
     let given = machine.located(expr)?;
     let name = param.name;
@@ -77,7 +80,8 @@ fn argument(machine: &mut Machine, param: &Param, expr: &Expr) -> Eval<Value> {
         Kind::Outline => Value::Loops(outline(&given, name)?),
         Kind::NumberOrPair if matches!(given.value, Val::List(_)) => Value::Vector(given.vector(name, 2)?),
         Kind::NumberOrPair => Value::Number(given.number(name)?),
-        Kind::HalfSpace => return Err(given.unlike(name, &wanted(param.kind)).into()),
+        Kind::Solid => Value::Shape(given.shape(name)?.clone()),
+        Kind::HalfSpace | Kind::Condition => return Err(given.unlike(name, &wanted(param.kind)).into()),
     })
 }
 

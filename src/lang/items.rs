@@ -144,7 +144,7 @@ impl Reader<'_> {
         let catalog = self.machine.catalog;
         let takes_condition = |word: &str| {
             let decl = catalog.find(Group::Primitive, word);
-            decl.is_some_and(|d| d.params.iter().any(|p| p.kind == Kind::HalfSpace))
+            decl.is_some_and(|d| d.params.iter().any(|p| matches!(p.kind, Kind::HalfSpace | Kind::Condition)))
         };
         let (sorted, cycles) = order::sorted(items, &takes_condition);
         self.errors.extend(cycles);

@@ -4,15 +4,20 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::args::{Bound, Formal};
 use super::builtins::Builtin;
-use super::units::sin_cos;
+use super::copies;
+use super::placing::{about, direction, matrix, named_direction, reflection, rotation};
 use super::value::{Eval, Val};
 use crate::diag::Diagnostic;
-use crate::scene::{FitTo, Operand, Shape, ShapeKind};
+use crate::scene::{FitTo, MaterialId, Operand, Shape, ShapeKind};
 
 const MOVE: &[Formal] = &[Formal::place("by")];
 const TURN: &[Formal] = &[Formal::place("angle"), Formal::named("about").optional()];
 const ROTATE: &[Formal] = &[Formal::named("axis"), Formal::named("by"), Formal::named("about").optional()];
 const SCALE: &[Formal] = &[Formal::place("factor"), Formal::named("about").optional()];
+const MIRROR: &[Formal] = &[Formal::place("axis"), Formal::named("about").optional()];
+const MATRIX: &[Formal] = &[Formal::place("rows")];
+const LIST: &[Formal] = &[Formal::place("list")];
+const AROUND: &[Formal] = &[Formal::place("n"), Formal::named("about").optional()];
 const FIT: &[Formal] =
     &[Formal::place("at"), Formal::named("height").optional(), Formal::named("size").optional()];
 const WITH: &[Formal] = &[Formal::place("material")];
@@ -49,12 +54,48 @@ pub const TABLE: &[Builtin] = &[
         call: scale,
     },
     Builtin {
+        name: "mirror",
+        formals: MIRROR,
+        doc: "Mirrored along an axis, a vector or \"x\", \"y\", \"z\": at the plane across it.",
+        call: mirror,
+    },
+    Builtin {
+        name: "matrix",
+        formals: MATRIX,
+        doc: "Placed by 3 rows of 4 numbers; points are columns.",
+        call: by_matrix,
+    },
+    Builtin {
+        name: "array",
+        formals: LIST,
+        doc: "A copy moved by each vector of a list.",
+        call: copies::array,
+    },
+    Builtin {
+        name: "around",
+        formals: AROUND,
+        doc: "So many copies around the z axis, evenly over a turn.",
+        call: copies::around,
+    },
+    Builtin {
+        name: "instance",
+        formals: LIST,
+        doc: "A copy at each vector of a list, or placed by each matrix.",
+        call: copies::instance,
+    },
+    Builtin {
         name: "fit",
         formals: FIT,
         doc: "Scaled to a height or a size, the middle of the bottom of its bounds at a point.",
         call: fit,
     },
     Builtin { name: "with", formals: WITH, doc: "Wears a material where it has none.", call: with },
+    Builtin {
+        name: "cut",
+        formals: WITH,
+        doc: "The cutters below wear a material where they have none.",
+        call: cut,
+    },
     Builtin { name: "close", formals: CLOSE, doc: "The holes of an open scan capped.", call: close },
     Builtin {
         name: "thicken",
@@ -88,8 +129,8 @@ fn node(bound: &Bound, kind: impl FnOnce(Shape) -> ShapeKind) -> Eval<Val> {
 }
 
 fn transform(bound: &Bound, linear: DMat3) -> Eval<Val> {
-    let about = bound.get("about").map_or(Ok(DVec3::ZERO), |a| a.vec3("about"))?;
-    let world_from_local = DAffine3::from_mat3_translation(linear, about - linear * about);
+    let point = bound.get("about").map_or(Ok(DVec3::ZERO), |a| a.vec3("about"))?;
+    let world_from_local = about(linear, point);
     if !world_from_local.is_finite() {
         return Err(Diagnostic::error("E0504", "the placement is not finite")
             .at(bound.callee.at, "infinite or undefined")
@@ -109,32 +150,17 @@ fn turn(bound: &Bound, axis: DVec3) -> Eval<Val> {
 }
 
 fn rotate(bound: &Bound) -> Eval<Val> {
-    let axis = bound.need("axis")?;
-    let direction = axis.vec3("axis")?;
-    let largest = direction.abs().max_element();
-    if largest == 0.0 {
-        return Err(Diagnostic::error("E0510", "the axis has no direction")
-            .at(axis.at, "zero")
-            .help("write a direction, such as `[0, 0, 1]`")
-            .into());
-    }
-    let unit = (direction / largest).normalize();
-    transform(bound, rotation(unit, bound.angle("by")?))
+    let axis = direction(bound.need("axis")?)?;
+    transform(bound, rotation(axis, bound.angle("by")?))
 }
 
-/// The right-handed rotation around a unit vector (Rodrigues), exact for quarter turns around the axes.
-fn rotation(axis: DVec3, degrees: f64) -> DMat3 {
-    let (s, c) = sin_cos(degrees);
-    let skew = DMat3::from_cols(
-        DVec3::new(0.0, axis.z, -axis.y),
-        DVec3::new(-axis.z, 0.0, axis.x),
-        DVec3::new(axis.y, -axis.x, 0.0),
-    );
-    let along = DMat3::from_cols(axis * axis.x, axis * axis.y, axis * axis.z);
-    let across = DMat3::IDENTITY + along * -1.0;
-    let sum = along + across * c + skew * s;
-    // A sum with zero turns -0 into 0.
-    DMat3::from_cols(sum.x_axis + DVec3::ZERO, sum.y_axis + DVec3::ZERO, sum.z_axis + DVec3::ZERO)
+fn mirror(bound: &Bound) -> Eval<Val> {
+    transform(bound, reflection(named_direction(bound.need("axis")?)?))
+}
+
+fn by_matrix(bound: &Bound) -> Eval<Val> {
+    let world_from_local = matrix(bound.need("rows")?)?;
+    node(bound, |child| ShapeKind::Transform { world_from_local, child })
 }
 
 fn scale(bound: &Bound) -> Eval<Val> {
@@ -172,17 +198,26 @@ fn fit(bound: &Bound) -> Eval<Val> {
 }
 
 fn with(bound: &Bound) -> Eval<Val> {
-    let given = bound.need("material")?;
-    let Val::Material(material) = given.value else {
-        let error = given.unlike("material", "a material");
-        return Err(error
-            .help(match given.value {
-                Val::Color(_) => "write a material of this colour, such as `matte(#b8683c)`",
-                _ => "name one: `material clay(color: #b8683c)`, then `.with(clay)`",
-            })
-            .into());
-    };
+    let material = material(bound, "with")?;
     node(bound, |child| ShapeKind::With { material, child })
+}
+
+fn cut(bound: &Bound) -> Eval<Val> {
+    let material = material(bound, "cut")?;
+    node(bound, |child| ShapeKind::Cut { material, child })
+}
+
+/// The argument `material` of a method.
+fn material(bound: &Bound, method: &str) -> Eval<MaterialId> {
+    let given = bound.need("material")?;
+    if let Val::Material(material) = given.value {
+        return Ok(material);
+    }
+    let help = match given.value {
+        Val::Color(_) => "write a material of this colour, such as `matte(#b8683c)`".to_owned(),
+        _ => format!("name one: `material clay(color: #b8683c)`, then `.{method}(clay)`"),
+    };
+    Err(given.unlike("material", "a material").help(help).into())
 }
 
 fn close(bound: &Bound) -> Eval<Val> {

@@ -2,6 +2,7 @@
 pub mod cholesky;
 pub mod convex;
 pub mod eigen;
+pub mod enclosure;
 pub mod hash;
 pub mod lanes;
 pub mod power;

@@ -312,7 +312,7 @@ impl Solidity {
 /// A closed form, or a complaint at its argument.
 pub(super) fn exact(
     call: &Call,
-    build: fn(&Call) -> Result<Arc<dyn Solid>, crate::scene::BuildError>,
+    build: impl Fn(&Call) -> Result<Arc<dyn Solid>, crate::scene::BuildError>,
 ) -> Result<Built, Diagnostic> {
     build(call).map(Built::Exact).map_err(|e| complaint(call, e))
 }

@@ -2,6 +2,7 @@
 
 use glam::DAffine3;
 
+use super::bounding::bounded_by;
 use super::lower::Lowering;
 use crate::diag::Diagnostic;
 use crate::geom::Aabb;
@@ -12,9 +13,13 @@ impl Lowering<'_, '_> {
     /// cut from. Unbounded where the shape is.
     pub(super) fn extent(&mut self, shape: &Shape, to_from: &DAffine3) -> Result<Aabb, Diagnostic> {
         match &shape.0.kind {
-            ShapeKind::Leaf { .. } => {
+            ShapeKind::Leaf { call, .. } => {
                 let solid = self.any_solid(shape)?;
-                Ok(if solid.bounds().is_finite() { solid.extent_under(to_from) } else { Aabb::ALL })
+                match bounded_by(call) {
+                    Some((_, bounding)) => self.extent(bounding, to_from),
+                    None if solid.bounds().is_finite() => Ok(solid.extent_under(to_from)),
+                    None => Ok(Aabb::ALL),
+                }
             }
             ShapeKind::Transform { world_from_local, child } => {
                 self.extent(child, &(*to_from * *world_from_local))
@@ -23,7 +28,9 @@ impl Lowering<'_, '_> {
                 let fitted = self.fit(shape)?;
                 self.extent(child, &(*to_from * fitted))
             }
-            ShapeKind::With { child, .. } | ShapeKind::Close { child, .. } => self.extent(child, to_from),
+            ShapeKind::With { child, .. } | ShapeKind::Cut { child, .. } | ShapeKind::Close { child, .. } => {
+                self.extent(child, to_from)
+            }
             ShapeKind::Thicken { by, child } => Ok(grown(self.extent(child, to_from)?, 0.5 * by, to_from)),
             ShapeKind::Offset { by, child } => Ok(grown(self.extent(child, to_from)?, *by, to_from)),
             ShapeKind::Clip { by, child } => {

@@ -5,8 +5,11 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::bounding::bounded_by;
 use super::build::{Builder, Built, exact};
 use super::edits::{Change, Edit, Edits, Stage, edits};
+use super::limits;
+use super::outline::Outline;
 use super::samples::{Sampling, sample};
 use crate::cloud::Cloud;
 use crate::csg::{Clipped, Clippee, Expr, Leaf, Object};
@@ -33,6 +36,8 @@ pub(super) struct Lowering<'b, 'o> {
     pub leaves: Vec<Leaf>,
     /// Sheets drawn.
     pub sheets: Vec<Leaf>,
+    /// Where the leaves, and what cuts them, were written.
+    pub outline: Outline,
 }
 
 /// What a node inherits from above.
@@ -40,6 +45,8 @@ pub(super) struct Lowering<'b, 'o> {
 struct Context<'a> {
     world_from_local: DAffine3,
     material: Option<MaterialId>,
+    /// What cutters wear that have no material.
+    cut: Option<MaterialId>,
     cutter: bool,
     /// Whether an odd number of complements stands above: what grows the whole shrinks this.
     turned: bool,
@@ -52,6 +59,7 @@ struct Context<'a> {
 const TOP: Context = Context {
     world_from_local: DAffine3::IDENTITY,
     material: None,
+    cut: None,
     cutter: false,
     turned: false,
     wanted: None,
@@ -67,11 +75,12 @@ enum Lowered {
 impl<'b, 'o> Lowering<'b, 'o> {
     /// Nothing gathered yet.
     pub fn new(builder: &'b mut Builder<'o>, measure_all: bool) -> Lowering<'b, 'o> {
-        Lowering { builder, measure_all, leaves: Vec::new(), sheets: Vec::new() }
+        Lowering { builder, measure_all, leaves: Vec::new(), sheets: Vec::new(), outline: Outline::default() }
     }
 
     /// Lowers what is drawn.
     pub fn draw(&mut self, shape: &Shape) -> Result<Drawn, Diagnostic> {
+        limits::check_count(shape)?;
         let bounds = self.extent(shape, &DAffine3::IDENTITY)?;
         let solid = match self.lower(shape, TOP)? {
             Lowered::Solid(expr) => Some(expr),
@@ -99,6 +108,9 @@ impl<'b, 'o> Lowering<'b, 'o> {
                 // The innermost `.with` is nearest to the leaf; an outer one leaves it alone.
                 self.lower(child, Context { material: Some(*material), ..context })
             }
+            ShapeKind::Cut { material, child } => {
+                self.lower(child, Context { cut: Some(*material), ..context })
+            }
             ShapeKind::Close { max_hole, child } => {
                 self.edited(shape, Change::Close(max_hole.unwrap_or(f64::INFINITY)), child, context)
             }
@@ -120,17 +132,22 @@ impl<'b, 'o> Lowering<'b, 'o> {
             edit.check_through(op, context.turned, shape.0.at)?;
         }
         let mut parts = Vec::with_capacity(operands.len());
+        let mut cut = self.outline.begin_cut(op);
         for (i, operand) in operands.iter().enumerate() {
             let taken = op == BooleanOp::Complement || (op == BooleanOp::Difference && 0 < i);
             let context = Context {
                 cutter: context.cutter || taken,
                 turned: context.turned != taken,
-                // A cutter keeps its own material or shows the base's: `.with` above stops here.
-                material: if taken { None } else { context.material },
+                // A cutter keeps its own material, has that of `.cut`, or shows the base's: `.with` above stops here.
+                material: if taken { context.cut } else { context.material },
                 wanted: Some((op.sign(), operand.at)),
                 ..context
             };
+            let first = self.leaves.len() as u32;
             parts.push((self.lower(&operand.shape, context)?, operand.at));
+            if let Some(cut) = &mut cut {
+                self.outline.add_to_cut(*cut, taken, operand.at, first..self.leaves.len() as u32);
+            }
         }
         if op == BooleanOp::Union && parts.iter().any(|p| matches!(p.0, Lowered::Sheets(_))) {
             return joined_sheets(parts);
@@ -167,7 +184,14 @@ impl<'b, 'o> Lowering<'b, 'o> {
             return Ok(Lowered::Sheets(vec![leaf]));
         }
         self.leaves.push(leaf);
-        Ok(Lowered::Solid(Expr::Leaf(self.leaves.len() as u32 - 1)))
+        self.outline.calls.push(call.at);
+        let own = Expr::Leaf(self.leaves.len() as u32 - 1);
+        let Some((by, bounding)) = bounded_by(call) else { return Ok(Lowered::Solid(own)) };
+        let at = call.place(by);
+        match self.lower(bounding, Context { wanted: Some((by, at)), edits: None, ..context })? {
+            Lowered::Solid(expr) => Ok(Lowered::Solid(Expr::And(vec![own, expr]))),
+            Lowered::Sheets(_) => Err(no_inside(by, at, "a Sheet: an open surface")),
+        }
     }
 
     /// A node that changes the leaves below it.
@@ -273,6 +297,10 @@ impl<'b, 'o> Lowering<'b, 'o> {
             Some(Build::Exact(build)) => exact(call, build)?,
             Some(Build::Mesh) => self.builder.mesh(call)?,
             Some(Build::Heights) => self.builder.heights(call)?,
+            Some(Build::Bounded { by, build }) => {
+                let bounds = self.bounding_box(call, by)?;
+                exact(call, |call| build(call, &bounds))?
+            }
             Some(Build::Points) => {
                 let cloud = match call.get("source") {
                     Some(Value::Shape(solid)) => self.sampled(call, solid)?,

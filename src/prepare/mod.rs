@@ -5,13 +5,16 @@
 //! turns shapes into leaves and one set expression. Text and pixels are left to others.
 
 mod assets;
+mod bounding;
 mod build;
 mod edits;
 mod extent;
 mod files;
 mod fitness;
+mod limits;
 mod lower;
 mod offset;
+mod outline;
 mod samples;
 pub mod survey;
 
@@ -28,6 +31,7 @@ use crate::solid::{Counts, table};
 
 use build::Builder;
 use lower::Lowering;
+pub use outline::{Cutting, Outline, Part, Piece};
 
 /// What the command line has to say about a scene.
 #[derive(Clone, Debug, Default)]
@@ -65,6 +69,8 @@ pub struct Prepared {
     pub counts: Counts,
     /// What was found about each scan.
     pub scans: Vec<ScanReport>,
+    /// Where the solids of the shot were written.
+    pub outline: Outline,
 }
 
 /// What was found about a scan.
@@ -99,7 +105,7 @@ pub fn prepare(scene: &Scene, options: &Options) -> Result<Prepared, Vec<Diagnos
     let mut builder = Builder::new(options, known);
     let world = world(scene, &mut builder, options.measure_all, known.len());
     let world = world.map_err(|more| errors.extend(more)).ok();
-    let (Some(settings), Some(materials), Some(lights), Some(chosen), Some(world)) =
+    let (Some(settings), Some(materials), Some(lights), Some(chosen), Some((world, outline))) =
         (settings, materials.clone(), lights, chosen, world)
     else {
         return Err(errors);
@@ -107,7 +113,7 @@ pub fn prepare(scene: &Scene, options: &Options) -> Result<Prepared, Vec<Diagnos
     let Builder { warnings, inputs, counts, scans, .. } = builder;
     let camera = chosen.unwrap_or_else(|| Camera::fit(world.bounds()));
     let shot = Shot { world, camera, lights, materials, settings };
-    Ok(Prepared { shot, warnings, inputs, counts, scans })
+    Ok(Prepared { shot, warnings, inputs, counts, scans, outline })
 }
 
 fn keep<T>(errors: &mut Vec<Diagnostic>, result: Result<T, Diagnostic>) -> Option<T> {
@@ -163,22 +169,25 @@ fn unknown_camera(scene: &Scene, name: &str) -> Diagnostic {
     }
 }
 
-/// All that is drawn.
+/// All that is drawn, and where it was written.
 fn world(
     scene: &Scene,
     builder: &mut Builder,
     measure_all: bool,
     bare: usize,
-) -> Result<World, Vec<Diagnostic>> {
+) -> Result<(World, Outline), Vec<Diagnostic>> {
     let mut lowering = Lowering::new(builder, measure_all);
     let mut errors = Vec::new();
     let mut solids = Vec::new();
+    let mut places = Vec::new();
     let mut bounds = Aabb::EMPTY;
     for draw in &scene.draws {
+        let first = lowering.leaves.len() as u32;
         match lowering.draw(&draw.shape) {
             Ok(drawn) => {
                 if let Some(expr) = drawn.solid {
                     solids.push(expr);
+                    places.push((draw.at, first..lowering.leaves.len() as u32, drawn.bounds));
                 }
                 if drawn.bounds.is_finite() {
                     bounds = bounds.union(drawn.bounds);
@@ -190,6 +199,12 @@ fn world(
     if !errors.is_empty() {
         return Err(errors);
     }
-    let Lowering { leaves, sheets, .. } = lowering;
-    Ok(World::new(Object::new(leaves, &Expr::Or(solids)), sheets, bounds, bare as u32))
+    let Lowering { leaves, sheets, mut outline, .. } = lowering;
+    let mut whole = Expr::Or(solids);
+    let world = World::new(Object::new(leaves, &whole), sheets, bounds, bare as u32);
+    if let Expr::Or(solids) = &mut whole {
+        let part = |(expr, (at, leaves, bounds))| Part { at, expr, leaves, bounds };
+        outline.parts = solids.drain(..).zip(places).map(part).collect();
+    }
+    Ok((world, outline))
 }

@@ -57,6 +57,10 @@ pub enum Kind {
     Outline,
     /// A number, or two.
     NumberOrPair,
+    /// A condition on x, y, z.
+    Condition,
+    /// A solid.
+    Solid,
     /// A length or one of these words.
     LengthOr(&'static [&'static str]),
 }

@@ -2,6 +2,7 @@
 //! but no geometry and no files.
 
 mod decl;
+pub mod formula;
 mod value;
 
 use std::sync::Arc;
@@ -10,6 +11,7 @@ use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
 
 pub use decl::{BuildError, Catalog, Decl, Group, Kind, Param};
+pub use formula::Formula;
 pub use value::{Arg, Call, Value};
 
 use crate::source::Span;
@@ -86,6 +88,7 @@ impl ShapeKind {
             ShapeKind::Transform { child, .. }
             | ShapeKind::Fit { child, .. }
             | ShapeKind::With { child, .. }
+            | ShapeKind::Cut { child, .. }
             | ShapeKind::Close { child, .. }
             | ShapeKind::Thicken { child, .. }
             | ShapeKind::Offset { child, .. } => out.push(child),
@@ -145,6 +148,13 @@ pub enum ShapeKind {
         /// The material.
         material: MaterialId,
         /// What wears it.
+        child: Shape,
+    },
+    /// A material for every cutter below that has none: what `-`, `difference` and `!` take away.
+    Cut {
+        /// The material.
+        material: MaterialId,
+        /// What is cut.
         child: Shape,
     },
     /// The holes of a scan capped.

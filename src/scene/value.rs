@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::Shape;
+use super::{Formula, Shape};
 use crate::source::Span;
 
 /// A resolved value. Lengths are numbers of scene units, angles radians, colours linear.
@@ -48,6 +48,8 @@ pub enum Value {
         /// The plane is `normal . p = offset`.
         offset: f64,
     },
+    /// A condition on x, y, z of any form.
+    Formula(std::sync::Arc<Formula>),
 }
 
 /// A value with the place where it was written.

@@ -54,6 +54,11 @@ impl World {
         World { solids, sheets, bounds, bare }
     }
 
+    /// The union of the solids.
+    pub fn solids(&self) -> &Object {
+        &self.solids
+    }
+
     /// A box around everything bounded that is drawn; empty where nothing is.
     pub fn bounds(&self) -> Aabb {
         self.bounds

@@ -9,6 +9,7 @@ pub mod cylinder;
 pub mod extrude;
 pub mod half_space;
 pub mod heightfield;
+pub mod implicit;
 pub mod mesh;
 pub mod outline;
 pub mod parity;
@@ -16,8 +17,8 @@ pub mod plane;
 pub mod point_set;
 pub mod points;
 pub mod quadric;
-pub mod rounded_box;
 pub mod revolve;
+pub mod rounded_box;
 pub mod sphere;
 pub mod superellipsoid;
 pub mod table;
@@ -123,6 +124,8 @@ pub struct Scratch {
     pub field: point_set::FieldScratch,
     /// The same for each thickened surface.
     pub thick: Vec<point_set::ThickLine>,
+    /// Room for evaluating formulas.
+    pub implicit: implicit::Room,
 }
 
 /// Counts of work. Sums of them do not depend on the order of work.
@@ -134,7 +137,7 @@ pub struct Counts {
     pub degree_falls: u64,
     /// Crossings of point set surfaces found.
     pub crossings: u64,
-    /// Cells of a ray that the curvature certificate could not decide.
+    /// Cells of a ray that the curvature certificate, or interval arithmetic on a formula, could not decide.
     pub certificate_failures: u64,
     /// Gaps whose ends disagreed and were mended by a cap.
     pub parity_repairs: u64,

@@ -4,10 +4,14 @@
 use std::sync::Arc;
 
 use super::{
-    Solid, block, capsule, cone, cylinder, extrude, half_space, heightfield, mesh, plane, points, quadric,
-    revolve, sphere, superellipsoid, torus, tube,
+    Solid, block, capsule, cone, cylinder, extrude, half_space, heightfield, implicit, mesh, plane, points,
+    quadric, revolve, sphere, superellipsoid, torus, tube,
 };
+use crate::geom::Aabb;
 use crate::scene::{BuildError, Call, Decl};
+
+/// A solid, or why there is none.
+pub type Made = Result<Arc<dyn Solid>, BuildError>;
 
 /// How a primitive is made.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +22,13 @@ pub enum Build {
     Mesh,
     /// From the heights of an image file.
     Heights,
+    /// From the arguments and the box around another solid, which bounds it: the two are intersected.
+    Bounded {
+        /// The argument that is the other solid.
+        by: &'static str,
+        /// Its maker, given the box.
+        build: fn(&Call, &Aabb) -> Made,
+    },
     /// From the samples of a file or of another solid: whoever prepares the scene fetches those.
     Points,
 }
@@ -46,6 +57,7 @@ pub static PRIMITIVES: &[Primitive] = &[
     half_space::PRIMITIVE,
     heightfield::PRIMITIVE,
     mesh::PRIMITIVE,
+    implicit::PRIMITIVE,
     plane::PRIMITIVE,
     points::PRIMITIVE,
     revolve::PRIMITIVE,

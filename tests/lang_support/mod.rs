@@ -44,6 +44,14 @@ const DECLS: &[Decl] = &[
             Param::named("at", Kind::Vector(3), "point"),
         ],
     ),
+    decl(
+        "implicit",
+        Group::Primitive,
+        &[
+            Param { required: true, ..Param::placed("where", Kind::Condition, "condition") },
+            Param::required("inside", Kind::Solid, "bounds"),
+        ],
+    ),
     decl("plane", Group::Primitive, &[Param::required("z", Kind::Length, "height")]),
     decl(
         "points",

@@ -25,6 +25,8 @@ pub enum Command {
     Render(RenderArgs),
     /// List where rays go in and out of what a scene draws
     Probe(ProbeArgs),
+    /// Say what is wrong, or may be, with scenes: names, types, open scans, geometry; renders nothing
+    Check(CheckArgs),
     /// Say what a cloud of points is like, or convert it
     #[command(subcommand)]
     Cloud(CloudCommand),
@@ -104,6 +106,9 @@ impl Command {
         match self {
             Command::Render(args) => of(&args.scene),
             Command::Probe(args) => of(&args.scene),
+            Command::Check(args) => {
+                CloudArgs { threads: args.threads, format: args.format, lenient: args.lenient }
+            }
             Command::Cloud(CloudCommand::Info(args)) => args.common,
             Command::Cloud(CloudCommand::Convert(args)) => args.common,
         }
@@ -136,6 +141,29 @@ pub struct SceneArgs {
     /// Size of the whole picture, pixels
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
+}
+
+/// Arguments of `check`.
+#[derive(Group, Debug)]
+pub struct CheckArgs {
+    /// Scene files; `-` for standard input
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+    /// Set a parameter of the scenes
+    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = define)]
+    pub define: Vec<(String, String)>,
+    /// Threads; 0 for all cores
+    #[arg(short, long, value_name = "N", default_value_t = 0, value_parser = threads)]
+    pub threads: usize,
+    /// How messages look on standard error
+    #[arg(long, value_enum, default_value_t = MessageFormat::Text)]
+    pub format: MessageFormat,
+    /// Let the scenes read files below this folder too
+    #[arg(long, value_name = "DIR")]
+    pub allow_read: Vec<PathBuf>,
+    /// Keep the whole points of scans that are cut short, and say so
+    #[arg(long)]
+    pub lenient: bool,
 }
 
 /// How messages look.

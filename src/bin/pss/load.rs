@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use pss::diag::{Diagnostic, Fault};
-use pss::prepare::{self, Options, ScanReport};
+use pss::prepare::{self, Options, Outline, ScanReport};
 use pss::shot::Shot;
 use pss::source::SourceMap;
 
@@ -29,6 +29,12 @@ pub struct Loaded {
     pub parsing: Duration,
     /// Building what it says.
     pub preparing: Duration,
+    /// Where its solids were written.
+    pub outline: Outline,
+    /// All texts read.
+    pub sources: SourceMap,
+    /// How many warnings there were.
+    pub warnings: usize,
 }
 
 /// Reads and prepares a scene. `options` holds what the command has to say; what all commands share is filled
@@ -69,7 +75,16 @@ pub fn load(args: &SceneArgs, options: Options, quiet: bool, console: &Console) 
     }
     let texts = sources.files().filter_map(|f| f.path.clone());
     let inputs = texts.chain(prepared.inputs).collect();
-    Ok(Loaded { shot: prepared.shot, inputs, scans: prepared.scans, parsing, preparing: start.elapsed() })
+    Ok(Loaded {
+        shot: prepared.shot,
+        inputs,
+        scans: prepared.scans,
+        parsing,
+        preparing: start.elapsed(),
+        outline: prepared.outline,
+        warnings: warnings.len() + prepared.warnings.len(),
+        sources,
+    })
 }
 
 /// Whether the scene comes from standard input.

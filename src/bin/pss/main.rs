@@ -2,6 +2,7 @@
 //! output and process state; everything else is the library's.
 
 mod args;
+mod check;
 mod cloud;
 mod console;
 mod load;
@@ -31,14 +32,15 @@ fn main() -> ExitCode {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|e| Failure::internal(format!("cannot start {threads} threads: {e}")))?;
         pool.install(|| match &args.command {
-            Command::Render(args) => render::run(args, &console),
-            Command::Probe(args) => probe::run(args, &console),
-            Command::Cloud(command) => cloud::run(command, &console),
+            Command::Render(args) => render::run(args, &console).map(|()| 0),
+            Command::Probe(args) => probe::run(args, &console).map(|()| 0),
+            Command::Check(args) => Ok(check::run(args, &console)),
+            Command::Cloud(command) => cloud::run(command, &console).map(|()| 0),
         })
     });
     let done = done.unwrap_or_else(|_| Err(Failure::internal("the program went wrong".to_owned())));
     match done {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => ExitCode::from(code),
         Err(failure) => ExitCode::from(console.fail(&failure)),
     }
 }

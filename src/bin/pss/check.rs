@@ -1,0 +1,51 @@
+//! `pss check`: what is wrong, or may be, with scenes; renders nothing.
+
+use std::path::Path;
+
+use pss::prepare::Options;
+
+use crate::args::{CheckArgs, SceneArgs};
+use crate::console::{Console, Failure};
+use crate::load::{self, Loaded};
+
+/// Runs the command on all scenes; the exit code is that of the first that failed.
+pub fn run(args: &CheckArgs, console: &Console) -> u8 {
+    let mut code = 0;
+    for scene in &args.scenes {
+        match check(args, scene, console) {
+            Ok(warnings) => console.note(&summary(scene, warnings)),
+            Err(failure) => {
+                let failed = console.fail(&failure);
+                code = if code == 0 { failed } else { code };
+            }
+        }
+    }
+    code
+}
+
+/// Shows a scene's warnings and says how many there are.
+fn check(args: &CheckArgs, scene: &Path, console: &Console) -> Result<usize, Failure> {
+    let args = SceneArgs {
+        scene: scene.to_owned(),
+        define: args.define.clone(),
+        threads: args.threads,
+        format: args.format,
+        allow_read: args.allow_read.clone(),
+        lenient: args.lenient,
+        camera: None,
+        size: None,
+    };
+    let options = Options { measure_all: true, ..Options::default() };
+    let Loaded { shot, outline, sources, warnings, .. } = load::load(&args, options, false, console)?;
+    let findings = pss::check::findings(&shot.world, &outline);
+    console.show(&findings, &sources);
+    Ok(warnings + findings.len())
+}
+
+fn summary(scene: &Path, warnings: usize) -> String {
+    let s = if warnings == 1 { "" } else { "s" };
+    match warnings {
+        0 => format!("{}: nothing to complain of", scene.display()),
+        n => format!("{}: {n} warning{s}", scene.display()),
+    }
+}

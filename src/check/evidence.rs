@@ -1,0 +1,230 @@
+//! What test lines saw of a world, summed over all of them; sums do not depend on their order.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::lines::{self, Event, Line};
+use super::logic::{Logic, State};
+use crate::csg::{Leaf, Object};
+use crate::geom::{Aabb, Ray, tolerance};
+use crate::prepare::Outline;
+use crate::solid::Scratch;
+use crate::source::Span;
+
+/// What was seen.
+#[derive(Debug)]
+pub struct Evidence<'a> {
+    /// The leaves.
+    pub(super) leaves: &'a [Leaf],
+    /// Where they were written.
+    pub(super) outline: &'a Outline,
+    pub(super) seen: Seen,
+}
+
+/// Sums over lines. Leaves, solids drawn and cuts by their index; operands of cuts by the place in the text, as one text
+/// may come to many solids.
+#[derive(Debug, Default)]
+pub(super) struct Seen {
+    /// Leaves that lines were aimed at.
+    pub aimed: BTreeSet<u32>,
+    /// Leaves that a line crossed, with some thickness.
+    pub crossed: BTreeSet<u32>,
+    /// Solids drawn that a line was inside.
+    pub parts: BTreeSet<u32>,
+    /// Pairs of leaves whose faces coincide.
+    pub shared: BTreeSet<(u32, u32)>,
+    /// Leaves that are thinner somewhere than rounding can tell, in a way that shows.
+    pub films: BTreeSet<u32>,
+    /// Pairs of solids drawn, and a box around where lines were inside both.
+    pub overlaps: BTreeMap<(u32, u32), Aabb>,
+    /// Cutters that took something away.
+    pub cutting: BTreeSet<Span>,
+    /// Bases that a line was inside.
+    pub bases: BTreeSet<Span>,
+    /// Bases of which something was left.
+    pub left: BTreeSet<Span>,
+    /// Cutters that did not hold somewhere in their base.
+    pub uncovering: BTreeSet<Span>,
+}
+
+impl Seen {
+    fn add(mut self, o: Seen) -> Seen {
+        self.aimed.extend(o.aimed);
+        self.crossed.extend(o.crossed);
+        self.parts.extend(o.parts);
+        self.shared.extend(o.shared);
+        self.films.extend(o.films);
+        for (pair, place) in o.overlaps {
+            let known = self.overlaps.entry(pair).or_default();
+            *known = known.union(place);
+        }
+        self.cutting.extend(o.cutting);
+        self.bases.extend(o.bases);
+        self.left.extend(o.left);
+        self.uncovering.extend(o.uncovering);
+        self
+    }
+}
+
+/// Lines that one task looks at.
+const BATCH: usize = 64;
+
+impl<'a> Evidence<'a> {
+    /// Casts all test lines.
+    pub fn gather(object: &'a Object, outline: &'a Outline) -> Evidence<'a> {
+        let logic = Logic::new(outline);
+        let lines = lines::lines(object, outline, logic.len());
+        let look = |batch: &[Line]| {
+            let mut witness = Witness::new(object, outline, &logic);
+            batch.iter().for_each(|line| witness.look(line));
+            witness.seen
+        };
+        let seen: Vec<Seen> = lines.par_chunks(BATCH).map(look).collect();
+        let seen = seen.into_iter().fold(Seen::default(), Seen::add);
+        Evidence { leaves: object.leaves(), outline, seen }
+    }
+}
+
+/// Looks along lines.
+struct Witness<'a> {
+    object: &'a Object,
+    outline: &'a Outline,
+    logic: &'a Logic,
+    seen: Seen,
+    inside: Vec<bool>,
+    events: Vec<Event>,
+    state: State,
+    scratch: Scratch,
+}
+
+impl<'a> Witness<'a> {
+    fn new(object: &'a Object, outline: &'a Outline, logic: &'a Logic) -> Witness<'a> {
+        Witness {
+            object,
+            outline,
+            logic,
+            seen: Seen::default(),
+            inside: vec![false; object.leaves().len()],
+            events: Vec::new(),
+            state: State::default(),
+            scratch: Scratch::default(),
+        }
+    }
+
+    fn look(&mut self, line: &Line) {
+        let Line { ray, aim } = line;
+        self.seen.aimed.extend(*aim);
+        lines::ask(self.object, ray, &mut self.inside, &mut self.events, &mut self.scratch);
+        let events = std::mem::take(&mut self.events);
+        self.faces(&events, ray);
+        self.stretches(&events, ray);
+        self.events = events;
+    }
+
+    /// Pairs of faces too near to be told apart.
+    fn faces(&mut self, events: &[Event], ray: &Ray) {
+        for (i, a) in events.iter().enumerate() {
+            for b in &events[i + 1..] {
+                if !self.is_thin(a, b, ray) {
+                    break;
+                }
+                if a.leaf != b.leaf {
+                    self.seen.shared.insert((a.leaf.min(b.leaf), a.leaf.max(b.leaf)));
+                }
+            }
+        }
+    }
+
+    /// Whether what lies between two crossings is nothing to the clean-up of set algebra.
+    fn is_thin(&self, a: &Event, b: &Event, ray: &Ray) -> bool {
+        let leaves = [a, b].map(|e| &self.object.leaves()[e.leaf as usize]);
+        let scale = ray.origin.length().max(ray.at(a.t).length().min(ray.at(b.t).length()));
+        let scale = scale.max(leaves[0].scale()).max(leaves[1].scale());
+        let error = a.crossing.shift * leaves[0].place.stretch + b.crossing.shift * leaves[1].place.stretch;
+        let thickness = (b.t - a.t) * ray.dir.length() * a.slope.max(b.slope);
+        thickness <= tolerance::cleanup(scale) + error
+    }
+
+    /// The stretches between crossings, the unbounded ones included.
+    fn stretches(&mut self, events: &[Event], ray: &Ray) {
+        let mut films = Films::default();
+        for i in 0..=events.len() {
+            let (before, after) = (i.checked_sub(1).map(|i| &events[i]), events.get(i));
+            if let Some(event) = before {
+                self.inside[event.leaf as usize] = event.crossing.entering;
+            }
+            if before.zip(after).is_some_and(|(a, b)| a.t == b.t) {
+                continue;
+            }
+            self.logic.evaluate(&self.inside, &mut self.state);
+            let any = self.logic.parts.iter().any(|p| self.state.holds[*p as usize]);
+            let thin = before.zip(after).filter(|(a, b)| self.is_thin(a, b, ray));
+            let one = thin.filter(|(a, b)| a.leaf == b.leaf).map(|(a, _)| a.leaf);
+            self.seen.films.extend(films.next(any, one));
+            if thin.is_none() {
+                let end = |e: Option<&Event>, none: f64| e.map_or(DVec3::splat(none), |e| ray.at(e.t));
+                self.stretch([end(before, f64::NEG_INFINITY), end(after, f64::INFINITY)]);
+            }
+        }
+    }
+
+    /// A stretch with some thickness, between two points.
+    fn stretch(&mut self, ends: [DVec3; 2]) {
+        let (seen, holds) = (&mut self.seen, &self.state.holds);
+        let inside = self.inside.iter().enumerate().filter(|(_, inside)| **inside);
+        seen.crossed.extend(inside.map(|(leaf, _)| leaf as u32));
+        let parts = self.logic.parts.iter().zip(0..).filter(|(node, _)| holds[**node as usize]);
+        let parts: Vec<u32> = parts.map(|(_, part)| part).collect();
+        for (k, a) in parts.iter().enumerate() {
+            for b in &parts[k + 1..] {
+                let known = seen.overlaps.entry((*a, *b)).or_default();
+                *known = ends.into_iter().fold(*known, Aabb::including);
+            }
+        }
+        seen.parts.extend(parts);
+        for (cut, nodes) in self.outline.cuts.iter().zip(&self.logic.cuts) {
+            let held = |node: &Option<u32>| node.is_some_and(|n| holds[n as usize]);
+            let base = cut.base.as_ref().map(|b| b.at).filter(|_| held(&nodes.base));
+            seen.bases.extend(base);
+            if !nodes.cutters.iter().any(held) {
+                seen.left.extend(base);
+            }
+            for (cutter, node) in cut.cutters.iter().zip(&nodes.cutters) {
+                if node.is_some_and(|n| holds[n as usize] && self.state.tells[n as usize]) {
+                    seen.cutting.insert(cutter.at);
+                }
+                if base.is_some() && !held(node) {
+                    seen.uncovering.insert(cutter.at);
+                }
+            }
+        }
+    }
+}
+
+/// Follows the truth along a line for films and slits: stretches that differ from both neighbours, which are alike.
+#[derive(Default)]
+struct Films {
+    /// The truth before the film, and the leaf whose film it is.
+    open: Option<(bool, Option<u32>)>,
+    before: Option<bool>,
+}
+
+impl Films {
+    /// The next stretch: its truth, and the leaf whose two faces bound it if it is thin. Returns the leaf of a film that
+    /// ended here.
+    fn next(&mut self, holds: bool, thin_of: Option<u32>) -> Option<u32> {
+        let found = match self.open.take() {
+            Some((before, leaf)) if before == holds => leaf,
+            _ => None,
+        };
+        if let (Some(before), Some(leaf)) = (self.before, thin_of)
+            && before != holds
+        {
+            self.open = Some((before, Some(leaf)));
+        }
+        self.before = Some(holds);
+        found
+    }
+}

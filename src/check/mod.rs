@@ -1,0 +1,64 @@
+//! What may be wrong with the geometry of a scene that can be rendered: faces that coincide, cutters that cut nothing,
+//! shapes that come to nothing, solids drawn into each other. Found by test lines, as a picture is; nothing is rendered.
+//!
+//! [`lines`] chooses the lines, [`logic`] says what a line's leaves mean, [`evidence`] gathers what the lines saw; each
+//! finding is one file and one line of [`FINDINGS`]. What test lines do not see is not told: a finding that says "no
+//! line" is as good as the lines are many, all others are certain.
+
+mod coincident;
+mod dead_cutter;
+mod empty;
+mod evidence;
+mod film;
+mod lines;
+mod logic;
+mod overlap;
+mod swallowed;
+mod unseen;
+
+use crate::diag::Diagnostic;
+use crate::prepare::Outline;
+use crate::shot::World;
+
+pub use evidence::Evidence;
+
+/// A kind of finding.
+#[derive(Clone, Copy, Debug)]
+pub struct Finding {
+    /// The code of its warnings.
+    pub code: &'static str,
+    /// One sentence.
+    pub doc: &'static str,
+    /// Its warnings, in the order of the text.
+    pub find: fn(&Evidence) -> Vec<Diagnostic>,
+}
+
+/// All kinds.
+pub const FINDINGS: &[Finding] = &[
+    coincident::FINDING,
+    dead_cutter::FINDING,
+    empty::FINDING,
+    swallowed::FINDING,
+    film::FINDING,
+    overlap::FINDING,
+    unseen::FINDING,
+];
+
+/// Warnings of one kind that are told; the rest is counted.
+const MOST: usize = 20;
+
+/// Looks at all solids of a world; warnings in the order of the table.
+pub fn findings(world: &World, outline: &Outline) -> Vec<Diagnostic> {
+    let evidence = Evidence::gather(world.solids(), outline);
+    let mut all = Vec::new();
+    for finding in FINDINGS {
+        let mut found = (finding.find)(&evidence);
+        let more = found.len().saturating_sub(MOST);
+        found.truncate(MOST);
+        if let (1.., Some(last)) = (more, found.last_mut()) {
+            last.notes.push(format!("and {more} more of {}", finding.code));
+        }
+        all.append(&mut found);
+    }
+    all
+}

@@ -1,0 +1,322 @@
+//! Conditions on the coordinates of any form, such as `x**2 + y**2 + z**2 <= 1`: read as the steps of a formula. What
+//! does not depend on x, y and z is evaluated at once.
+
+use super::args::Callee;
+use super::ast::{Args, Expr, ExprKind, InfixOp, PrefixOp, Step as Follows};
+use super::eval::Machine;
+use super::formula_functions::{FUNCTIONS, Function};
+use super::order;
+use super::value::{Eval, Val, bounded};
+use crate::diag::{Diagnostic, nearest};
+use crate::scene::Formula;
+use crate::scene::formula::{Builder, One, Step, Two};
+use crate::source::Span;
+
+/// The most steps one formula may have.
+const MAX_STEPS: usize = 100_000;
+
+/// What a part of a formula is worth: indices of steps.
+#[derive(Clone, Debug)]
+pub enum Term {
+    /// A number.
+    Number(u32),
+    /// An angle, radians.
+    Angle(u32),
+    /// Two to four numbers.
+    Vector(Vec<u32>),
+}
+
+impl Term {
+    /// What it is, with its article.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Term::Number(_) => "a number",
+            Term::Angle(_) => "an angle",
+            Term::Vector(_) => "a vector",
+        }
+    }
+}
+
+/// A term with its place.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// The term.
+    pub term: Term,
+    /// Where it was written.
+    pub at: Span,
+}
+
+/// A formula being read.
+pub struct Reader<'m, 'a> {
+    machine: &'m mut Machine<'a>,
+    steps: Builder,
+}
+
+/// Reads a comparison whose sides may use x, y and z.
+pub fn read(machine: &mut Machine, expr: &Expr) -> Eval<Formula> {
+    let mut inner = expr;
+    while let ExprKind::Paren(inside) = &inner.kind {
+        inner = inside;
+    }
+    let (left, op, right) = match &inner.kind {
+        ExprKind::Infix(left, rest) if rest[0].0.compares() => (left, rest[0].0, &rest[0].2),
+        ExprKind::Infix(_, rest) if matches!(rest[0].0, InfixOp::And | InfixOp::Or) => {
+            let error = refuse(expr, "is a condition of several", "one comparison is wanted");
+            return Err(error.help("both of two: `max(f, g) <= 0`; any of two: `min(f, g) <= 0`").into());
+        }
+        _ => return Err(refuse(expr, "is not a condition", "expected a comparison").into()),
+    };
+    let mut reader = Reader { machine, steps: Builder::default() };
+    let (a, b) = (reader.placed(left)?, reader.placed(right)?);
+    let (low, high, closed) = match op {
+        InfixOp::Below | InfixOp::AtMost => (a, b, op == InfixOp::AtMost),
+        InfixOp::Above | InfixOp::AtLeast => (b, a, op == InfixOp::AtLeast),
+        _ => return Err(refuse(expr, "has no inside", "a surface, not a solid").into()),
+    };
+    let last = match (&low.term, &high.term) {
+        (Term::Number(a), Term::Number(b)) | (Term::Angle(a), Term::Angle(b)) => {
+            // What is compared with zero is the formula itself.
+            let zero = reader.steps.constant(*b) == Some(0.0);
+            if zero { *a } else { reader.two(Two::Subtract, *a, *b, expr.at)? }
+        }
+        _ => return Err(reader.unlike(op, &low, &high, rest_sign(inner)).into()),
+    };
+    if reader.steps.constant(last).is_some() {
+        return Err(refuse(expr, "does not depend on x, y or z", "the same everywhere").into());
+    }
+    Ok(reader.steps.finish(last, closed))
+}
+
+fn rest_sign(expr: &Expr) -> Span {
+    match &expr.kind {
+        ExprKind::Infix(_, rest) => rest[0].1,
+        _ => expr.at,
+    }
+}
+
+fn refuse(expr: &Expr, what: &str, label: &str) -> Diagnostic {
+    Diagnostic::error("E0511", format!("the formula {what}"))
+        .at(expr.at, label)
+        .help("write a condition on x, y and z: `x**2 + y**2 + z**2 <= 1`")
+}
+
+impl Reader<'_, '_> {
+    /// A term with its place.
+    pub fn placed(&mut self, expr: &Expr) -> Eval<Placed> {
+        Ok(Placed { term: self.term(expr)?, at: expr.at })
+    }
+
+    fn term(&mut self, expr: &Expr) -> Eval<Term> {
+        match &expr.kind {
+            ExprKind::Name(n) if ["x", "y", "z"].contains(&n.as_str()) => {
+                self.add(Step::Coordinate(n.as_bytes()[0] - b'x'), expr.at).map(Term::Number)
+            }
+            _ if !order::uses(expr, &["x", "y", "z"]) => self.constant(expr),
+            ExprKind::Paren(inside) => self.term(inside),
+            ExprKind::Prefix(PrefixOp::Negate, _, operand) => {
+                let term = self.term(operand)?;
+                self.each(term, |r, a| r.one(One::Negate, a, expr.at))
+            }
+            ExprKind::Infix(first, rest) if rest[0].0.level() >= 5 => {
+                let mut sum = self.placed(first)?;
+                for (op, sign, operand) in rest {
+                    let next = self.placed(operand)?;
+                    let at = sum.at.to(next.at);
+                    sum = Placed { term: self.infix(*op, *sign, &sum, &next)?, at };
+                }
+                Ok(sum.term)
+            }
+            ExprKind::List(items) if (2..=4).contains(&items.len()) => {
+                let number = |item: &Expr| {
+                    let placed = self.placed(item)?;
+                    self.number(&placed, "a vector")
+                };
+                items.iter().map(number).collect::<Eval<Vec<u32>>>().map(Term::Vector)
+            }
+            ExprKind::Steps(base, steps) => match (&base.kind, steps.as_slice()) {
+                (ExprKind::Name(word), [Follows::Call(args)]) => self.call(word, base.at, args),
+                _ => Err(stranger(expr.at).into()),
+            },
+            _ => Err(stranger(expr.at).into()),
+        }
+    }
+
+    /// What does not depend on the coordinates.
+    fn constant(&mut self, expr: &Expr) -> Eval<Term> {
+        let given = self.machine.located(expr)?;
+        match &given.value {
+            Val::Angle(degrees) => {
+                self.add(Step::Number(bounded(*degrees, expr.at)?.to_radians()), expr.at).map(Term::Angle)
+            }
+            value => match value.numbers() {
+                Some(v) => {
+                    let number = |x| self.add(Step::Number(bounded(x, expr.at)?), expr.at);
+                    v.into_iter().map(number).collect::<Eval<Vec<u32>>>().map(Term::Vector)
+                }
+                None => self.add(Step::Number(given.number("the formula")?), expr.at).map(Term::Number),
+            },
+        }
+    }
+
+    fn call(&mut self, word: &str, word_at: Span, args: &Args) -> Eval<Term> {
+        if ["floor", "ceil", "round"].contains(&word) {
+            return Err(jumps(word, word_at).into());
+        }
+        let Some(function) = FUNCTIONS.iter().find(|f| f.name == word) else {
+            let error = Diagnostic::error("E0511", format!("`{word}` is no function of a formula"));
+            let error = error.at(word_at, "not known here");
+            return Err(match nearest(word, FUNCTIONS.iter().map(|f| f.name)) {
+                Some(near) => error.help(format!("did you mean `{near}`?")),
+                None => error.help(format!(
+                    "the functions are {}",
+                    FUNCTIONS.iter().map(|f| format!("`{}`", f.name)).collect::<Vec<_>>().join(" ")
+                )),
+            }
+            .into());
+        };
+        let Function { name, formals, call } = *function;
+        let at = word_at.to(args.at);
+        let bound = Callee { word: name, at, formals }.bind(args, "")?;
+        let given = bound.into_iter().flatten().map(|e| self.placed(e)).collect::<Eval<Vec<_>>>()?;
+        call(self, &given, at)
+    }
+
+    fn infix(&mut self, op: InfixOp, sign: Span, a: &Placed, b: &Placed) -> Eval<Term> {
+        let two = match op {
+            InfixOp::Add => Two::Add,
+            InfixOp::Subtract => Two::Subtract,
+            InfixOp::Multiply => Two::Multiply,
+            InfixOp::Divide => Two::Divide,
+            InfixOp::Power => Two::Power,
+            _ => return Err(jumps(op.sign(), sign).into()),
+        };
+        let sum = matches!(two, Two::Add | Two::Subtract);
+        match (&a.term, &b.term) {
+            (Term::Number(a), Term::Number(b)) => self.two(two, *a, *b, sign).map(Term::Number),
+            (Term::Angle(a), Term::Angle(b)) if sum => self.two(two, *a, *b, sign).map(Term::Angle),
+            (Term::Angle(a), Term::Angle(b)) if two == Two::Divide => {
+                self.two(two, *a, *b, sign).map(Term::Number)
+            }
+            (Term::Angle(a), Term::Number(b)) if matches!(two, Two::Multiply | Two::Divide) => {
+                self.two(two, *a, *b, sign).map(Term::Angle)
+            }
+            (Term::Number(a), Term::Angle(b)) if two == Two::Multiply => {
+                self.two(two, *a, *b, sign).map(Term::Angle)
+            }
+            (Term::Vector(u), Term::Vector(v)) if u.len() == v.len() && two != Two::Power => {
+                let pair = |(a, b): (&u32, &u32)| self.two(two, *a, *b, sign);
+                u.iter().zip(v).map(pair).collect::<Eval<Vec<u32>>>().map(Term::Vector)
+            }
+            (Term::Vector(v), Term::Number(b)) if matches!(two, Two::Multiply | Two::Divide) => {
+                v.iter().map(|a| self.two(two, *a, *b, sign)).collect::<Eval<Vec<u32>>>().map(Term::Vector)
+            }
+            (Term::Number(a), Term::Vector(v)) if two == Two::Multiply => {
+                v.iter().map(|b| self.two(two, *a, *b, sign)).collect::<Eval<Vec<u32>>>().map(Term::Vector)
+            }
+            _ => Err(self.unlike(op, a, b, sign).into()),
+        }
+    }
+
+    fn unlike(&self, op: InfixOp, a: &Placed, b: &Placed, sign: Span) -> Diagnostic {
+        let (left, right) = (a.term.kind(), b.term.kind());
+        let error = Diagnostic::error("E0203", format!("`{}` cannot take {left} and {right}", op.sign()));
+        let error = error.at(sign, "does not fit its operands").at(a.at, left).at(b.at, right);
+        match left == "an angle" || right == "an angle" {
+            true => error.help("divide an angle by a unit to get a number: `angle / 1rad`"),
+            false => error.help("numbers are wanted, or vectors of one size"),
+        }
+    }
+
+    /// A number, or an error that names the function that wants it.
+    pub fn number(&self, given: &Placed, of: &str) -> Eval<u32> {
+        match given.term {
+            Term::Number(a) => Ok(a),
+            _ => {
+                let kind = given.term.kind();
+                let error = Diagnostic::error("E0501", format!("`{of}` wants a number, found {kind}"));
+                Err(error.at(given.at, kind).help("write a number").into())
+            }
+        }
+    }
+
+    /// An angle, radians.
+    pub fn angle(&self, given: &Placed, of: &str) -> Eval<u32> {
+        match given.term {
+            Term::Angle(a) => Ok(a),
+            Term::Number(_) => {
+                let written = self.machine.written(given.at);
+                let plain = written.chars().all(|c| c.is_ascii_alphanumeric());
+                let fixed = if plain { format!("{written} * 1rad") } else { format!("({written}) * 1rad") };
+                let error = Diagnostic::error("E0502", format!("`{of}` wants an angle, found a bare number"));
+                Err(error.at(given.at, "which unit?").help(format!("write `{fixed}`")).into())
+            }
+            Term::Vector(_) => {
+                let error = Diagnostic::error("E0501", format!("`{of}` wants an angle, found a vector"));
+                Err(error.at(given.at, "a vector").help("write an angle, such as `x * 1rad`").into())
+            }
+        }
+    }
+
+    /// A function of one number, of each where it is given a vector.
+    pub fn each(&mut self, term: Term, mut f: impl FnMut(&mut Self, u32) -> Eval<u32>) -> Eval<Term> {
+        Ok(match term {
+            Term::Number(a) => Term::Number(f(self, a)?),
+            Term::Angle(a) => Term::Angle(f(self, a)?),
+            Term::Vector(v) => Term::Vector(v.into_iter().map(|a| f(self, a)).collect::<Eval<_>>()?),
+        })
+    }
+
+    fn add(&mut self, step: Step, at: Span) -> Eval<u32> {
+        if self.steps.len() < MAX_STEPS {
+            return Ok(self.steps.add(step));
+        }
+        let error = Diagnostic::error("E0703", format!("a formula of more than {MAX_STEPS} steps"));
+        Err(error.at(at, "too long").help("write a shorter formula").into())
+    }
+
+    /// A number.
+    pub fn literal(&mut self, x: f64, at: Span) -> Eval<u32> {
+        self.add(Step::Number(x), at)
+    }
+
+    /// A function of a step.
+    pub fn one(&mut self, op: One, a: u32, at: Span) -> Eval<u32> {
+        match (op, self.steps.constant(a)) {
+            (One::Negate, Some(x)) => self.add(Step::Number(-x), at),
+            _ => self.add(Step::One(op, a), at),
+        }
+    }
+
+    /// A function of two steps. What has only numbers in it is a number.
+    pub fn two(&mut self, op: Two, a: u32, b: u32, at: Span) -> Eval<u32> {
+        let (x, y) = (self.steps.constant(a), self.steps.constant(b));
+        let folded = match (op, x, y) {
+            (Two::Add, Some(x), Some(y)) => x + y,
+            (Two::Subtract, Some(x), Some(y)) => x - y,
+            (Two::Multiply, Some(x), Some(y)) => x * y,
+            (Two::Divide, Some(x), Some(y)) => x / y,
+            (Two::Power, Some(x), Some(y)) => x.powf(y),
+            (Two::Power, None, Some(n)) if n.fract() == 0.0 && n.abs() <= 1024.0 => {
+                return match n as i32 {
+                    0 => self.add(Step::Number(1.0), at),
+                    1 => Ok(a),
+                    n => self.add(Step::Power(a, n), at),
+                };
+            }
+            _ => return self.add(Step::Two(op, a, b), at),
+        };
+        self.add(Step::Number(bounded(folded, at)?), at)
+    }
+}
+
+fn stranger(at: Span) -> Diagnostic {
+    Diagnostic::error("E0511", "this cannot stand in a formula of x, y and z")
+        .at(at, "not a number")
+        .help("a formula is made of numbers, operators and functions of numbers")
+}
+
+fn jumps(word: &str, at: Span) -> Diagnostic {
+    Diagnostic::error("E0511", format!("`{word}` jumps: a formula of x, y and z must be continuous"))
+        .at(at, "not of x, y or z")
+        .help("for a wave write `sin(x * 1rad)`, for copies `.array(list)`")
+}

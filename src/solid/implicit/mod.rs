@@ -1,0 +1,141 @@
+//! Implicit solids: the points of a bounded shape where a formula of x, y and z is at most zero.
+//!
+//! [`tape`] evaluates the formula, [`roots`] finds where it changes sign along a ray, [`stretches`] asks it only for the part
+//! of the ray that is asked about. The solid ends where the box around
+//! the bounding shape ends; that it ends at the shape itself is left to set algebra.
+
+mod roots;
+mod stretches;
+mod tape;
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+
+use super::block::Block;
+use super::table::{Build, Primitive};
+use super::{Answer, Crossing, Scratch, Solid};
+use crate::geom::{Aabb, Interval, Ray, tolerance};
+use crate::scene::{BuildError, Call, Decl, Formula, Group, Kind, Param, Value};
+
+use roots::Line;
+use stretches::Stretches;
+pub use tape::Room;
+
+/// The line of the table.
+pub const PRIMITIVE: Primitive = Primitive {
+    decl: Decl {
+        word: "implicit",
+        group: Group::Primitive,
+        doc: "The points inside a bounded solid where a condition on x, y and z holds.",
+        params: &[
+            Param {
+                required: true,
+                ..Param::placed("where", Kind::Condition, "a condition, such as x*y*z <= 1")
+            },
+            Param::required("inside", Kind::Solid, "bounds the solid: their intersection"),
+        ],
+        example: "implicit(x**2 + y**2 + z**2 <= 1, inside: box(size: 2.5))",
+    },
+    build: Build::Bounded { by: "inside", build },
+};
+
+fn build(call: &Call, bounds: &Aabb) -> Result<Arc<dyn Solid>, BuildError> {
+    let Some(Value::Formula(formula)) = call.get("where") else {
+        return Err(BuildError {
+            param: "where",
+            message: "an implicit solid needs a condition".into(),
+            help: "write `implicit(x**2 + y**2 + z**2 <= 1, inside: box(size: 2.5))`".into(),
+        });
+    };
+    Ok(Arc::new(Implicit::new(formula.clone(), *bounds)))
+}
+
+/// Points of a box where a formula holds; where its value is not finite it does not hold.
+#[derive(Clone, Debug)]
+pub struct Implicit {
+    formula: Arc<Formula>,
+    /// The box around what bounds it.
+    asked: Aabb,
+    /// The box in which it is traced: a little larger, see [`tolerance::MARGIN`].
+    traced: Aabb,
+}
+
+/// Parts of the boundary below this are faces of the box, numbered as [`Block`] does; this one is the formula's own surface.
+const SURFACE: u32 = 6;
+
+impl Implicit {
+    /// A formula within a box; nothing where the box is empty or unbounded.
+    pub fn new(formula: Arc<Formula>, bounds: Aabb) -> Implicit {
+        let traced = match bounds.is_finite() && !bounds.is_empty() {
+            true => bounds.inflated(tolerance::MARGIN * bounds.size().max_element()),
+            false => Aabb::EMPTY,
+        };
+        Implicit { formula, asked: bounds, traced }
+    }
+}
+
+impl Solid for Implicit {
+    fn bounds(&self) -> Aabb {
+        self.traced
+    }
+
+    fn extent_under(&self, to_from: &DAffine3) -> Aabb {
+        self.asked.transformed(to_from)
+    }
+
+    /// Stretches of the ray's part in the box, from where the range begins until one with a crossing is done: see
+    /// [`Stretches`].
+    fn crossings(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        scratch: &mut Scratch,
+        out: &mut Vec<Crossing>,
+    ) -> Answer {
+        let first = out.len();
+        Block(self.traced).crossings(ray, range, scratch, out);
+        let &[enter, exit] = &out[first..] else { return Answer::whole_line(false) };
+        out.truncate(first);
+        if exit.t <= range.lo {
+            return Answer { inside: false, range: Interval::new(range.lo, f64::INFINITY) };
+        }
+        let mut room = std::mem::take(&mut scratch.implicit);
+        let mut roots = std::mem::take(&mut room.roots);
+        let stretches = Stretches::new(enter, exit, range);
+        let mut line = Line {
+            formula: &self.formula,
+            origin: ray.at(stretches.middle),
+            dir: ray.dir,
+            room: &mut room,
+            failures: 0,
+        };
+        let answer = stretches.answer(&mut line, &mut roots, out);
+        scratch.counts.certificate_failures += line.failures;
+        room.roots = roots;
+        scratch.implicit = room;
+        answer
+    }
+
+    /// The gradient of the formula, turned so that it points out as the crossing says: at a pole, and where the domain of
+    /// the formula ends, its values fall outward. Where it has none, against or along the ray.
+    fn normal(&self, ray: &Ray, crossing: &Crossing, scratch: &mut Scratch) -> DVec3 {
+        if crossing.part != SURFACE {
+            return Block(self.traced).normal(ray, crossing, scratch);
+        }
+        let (_, gradient) = tape::gradient(&self.formula.steps, ray.at(crossing.t), &mut scratch.implicit);
+        let largest = gradient.abs().max_element();
+        let against = if crossing.entering { -ray.dir } else { ray.dir };
+        let normal = (gradient / largest).try_normalize().unwrap_or_else(|| unit(against));
+        if normal.dot(against) < 0.0 { -normal } else { normal }
+    }
+
+    fn is_costly(&self) -> bool {
+        true
+    }
+}
+
+/// A vector of any length as a unit vector.
+fn unit(v: DVec3) -> DVec3 {
+    (v / v.abs().max_element()).normalize_or_zero()
+}
