@@ -160,7 +160,7 @@ fn crossings_at_a_grazing_incidence_come_in_pairs_or_not_at_all() {
             let line = line(&*subject.solid, &grazing);
             assert!(line.0.windows(2).all(|w| w[0].t < w[1].t && w[0].entering != w[1].entering), "{text}");
             if subject.solid.bounds().is_finite() {
-                assert!(line.0.len() % 2 == 0 && !line.1, "{text} {grazing:?} {line:?}");
+                assert!(line.0.len().is_multiple_of(2) && !line.1, "{text} {grazing:?} {line:?}");
             }
             pairs += line.0.len();
             let steep = |c| slope(&*subject.solid, &grazing, c);

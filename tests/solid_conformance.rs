@@ -63,7 +63,11 @@ fn crossings_are_finite_ascending_and_alternate() {
             let (crossings, mut inside) = line(&*s.solid, &ray);
             hits += crossings.len();
             let bounded = s.solid.bounds().is_finite();
-            assert!(!bounded || (!inside && crossings.len() % 2 == 0), "{} {ray:?} {crossings:?}", s.text);
+            assert!(
+                !bounded || (!inside && crossings.len().is_multiple_of(2)),
+                "{} {ray:?} {crossings:?}",
+                s.text
+            );
             for (i, c) in crossings.iter().enumerate() {
                 assert!(c.t.is_finite() && c.entering != inside, "{} {ray:?} {crossings:?}", s.text);
                 assert!(i == 0 || crossings[i - 1].t < c.t, "{} {ray:?} {crossings:?}", s.text);

@@ -37,7 +37,7 @@ fn c1_a_chord_near_the_rim_of_a_sphere_lies_on_it() {
                     let ray = Ray::new(turn * o, r * (turn * d));
                     let t = ts(&*ball, &ray);
                     let scale = r * far.max(1.0);
-                    assert!(t.len() % 2 == 0);
+                    assert!(t.len().is_multiple_of(2));
                     for t in &t {
                         let off = (ray.at(*t).length() - r).abs();
                         assert!(off <= 16.0 * EPS * scale, "{r} {j} {off:e}");
@@ -140,7 +140,7 @@ fn c9_far_tori_keep_their_digits_and_their_parity() {
             let d = (b - a) / apart;
             let ray = Ray::new(a - far * d, d);
             let (found, inside) = line(&ring, &ray);
-            assert!(found.len() % 2 == 0 && !inside, "odd {ray:?}");
+            assert!(found.len().is_multiple_of(2) && !inside, "odd {ray:?}");
             for want in [far, far + apart] {
                 let error = |t: f64| (t - want).abs();
                 let best = found.iter().min_by(|x, y| error(x.t).total_cmp(&error(y.t)));
@@ -177,9 +177,9 @@ fn c9_no_ray_meets_a_torus_an_odd_number_of_times() {
         let d = stream.direction();
         let ray = Ray::new(at - 10f64.powf(5.0 * stream.unit()) * d, d);
         let (found, inside) = line(&ring, &ray);
-        let alternate = found.iter().enumerate().all(|(i, c)| c.entering == (i % 2 == 0));
+        let alternate = found.iter().enumerate().all(|(i, c)| c.entering == i.is_multiple_of(2));
         assert!(
-            found.len() % 2 == 0 && found.len() <= 4 && !inside && alternate,
+            found.len().is_multiple_of(2) && found.len() <= 4 && !inside && alternate,
             "{minor} {ray:?} {found:?}"
         );
         hits += found.len();

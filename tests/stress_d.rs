@@ -9,7 +9,6 @@ use pss::csg::Scratch;
 use pss::geom::{Interval, Placement, Ray};
 use pss::num::hash::Stream;
 use pss::shot::Shot;
-use pss::solid::Solid;
 use solid_support::{EPS, cube, line, normal, solid, ts};
 
 /// A scene of every kind of solid, cut and joined, about 10 across.
@@ -21,11 +20,9 @@ const SCENE2: &str = "capsule(r: 0.5, from: [-3, 0, 2], to: [3, 1, 3]) | tube([[
     | sphere(r: [1, 2, 0.5], at: [0, 0, -3])";
 
 fn scene(of: &str, methods: &str) -> Shot {
-    let base = of.replace('\\', "");
-    let (a, rest) =
-        base.split_once(" - ").map_or((base.clone(), String::new()), |(a, b)| (a.into(), b.into()));
+    let (base, rest) = of.split_once(" - ").unwrap_or((of, ""));
     let cutters = rest.split(" - ").filter(|c| !c.is_empty()).collect::<Vec<_>>().join(", ");
-    shot(&format!("draw difference({a}, [{cutters}]){methods}"))
+    shot(&format!("draw difference({base}, [{cutters}]){methods}"))
 }
 
 /// A ray through the scene.
@@ -285,7 +282,7 @@ fn d10_sixty_four_transforms_and_their_inverses_are_none() {
 #[test]
 fn d11_units_change_nothing_but_the_numbers() {
     let part = |unit: &str| {
-        format!("draw difference(box([-3mm, -2mm, -1mm], [3mm, 2mm, 1mm], round: 0.25mm), [cylinder(r: 0.4mm, from: [0, 0, -2mm], to: [0, 0, 4mm]), torus(major: 2mm, minor: 0.5mm, at: [0, 0, 1mm]), cone(r1: 1mm, r2: 0, h: 0.7mm).rotate_y(40deg)])")
+        "draw difference(box([-3mm, -2mm, -1mm], [3mm, 2mm, 1mm], round: 0.25mm), [cylinder(r: 0.4mm, from: [0, 0, -2mm], to: [0, 0, 4mm]), torus(major: 2mm, minor: 0.5mm, at: [0, 0, 1mm]), cone(r1: 1mm, r2: 0, h: 0.7mm).rotate_y(40deg)])"
             .replace("draw", &format!("units({unit})\ndraw"))
     };
     let unlike = compare(

@@ -17,7 +17,7 @@ pub fn exp(x: f64) -> f64 {
         }
         c
     };
-    if !(x.abs() < LIMIT) {
+    if LIMIT <= x.abs() || x.is_nan() {
         return if x < 0.0 { 0.0 } else { f64::INFINITY };
     }
     let k = (x * std::f64::consts::LOG2_E).round_ties_even();

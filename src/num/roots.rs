@@ -30,7 +30,7 @@ pub fn ball(o: DVec3, d: DVec3, r: f64) -> Option<[f64; 2]> {
     }
     let middle = -b / a;
     let m = (o + middle * d).length();
-    if !(m < r) {
+    if m.is_nan() || r <= m {
         return None;
     }
     let half = ((r - m) * (r + m) / a).sqrt();

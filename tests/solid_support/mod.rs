@@ -18,7 +18,7 @@ pub const EPS: f64 = f64::EPSILON;
 /// The call that a text is, checked by the language.
 pub fn call(text: &str) -> Call {
     let mut sources = SourceMap::default();
-    let file = sources.add("test.pss", None, &format!("draw {text}"));
+    let file = sources.add("test.pss", None, format!("draw {text}"));
     let read = pss::lang::read(&mut sources, file, &prepare::catalog(), &[]);
     let (scene, _) = read.unwrap_or_else(|e| panic!("{text}: {e:?}"));
     match &scene.draws[0].shape.0.kind {
