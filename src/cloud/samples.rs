@@ -84,6 +84,7 @@ impl Samples {
         }
         let Cloud { points, normals, colors, mut notes, .. } = cloud;
         let Measured { table, spacing, widths } = measured;
+        let widths = spacing::capped(&points, &spacing, widths);
         let scene = Scene { points: &points, table: &table, widths: &widths };
         let given = normals.filter(|_| options.normals == NormalSource::File);
         let oriented = given.map_or_else(|| normals::from_points(scene), |n| normals::from_file(scene, n));
