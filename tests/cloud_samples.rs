@@ -207,7 +207,12 @@ fn no_sample_of_a_surface_is_a_stray() {
         let s = samples(cloud(points, None));
         println!("{name}: {} of {count}", s.len());
         // Beside samples ten times as dense a few of the thin ones on an edge look strewn.
-        let allowed = if name == "cube with a dense half" { count / 1000 } else { 0 };
+        // The thinnest end of the last ball is one spacing, the radius, from the next sample.
+        let allowed = match name {
+            "cube with a dense half" => count / 1000,
+            "ball, 10,000 to 1" => 1,
+            _ => 0,
+        };
         assert!(count <= s.len() + allowed, "{name}");
     }
 }
@@ -216,10 +221,10 @@ fn no_sample_of_a_surface_is_a_stray() {
 #[test]
 fn a_thin_sheet_in_a_dense_ball_has_no_weights_that_hold_the_ball() {
     let mut points = fibonacci_sphere(10_000);
-    let row = |i: i32| f64::from(i) * 0.3 - 1.35;
-    points.extend((0..100).map(|k| DVec3::new(row(k % 10), row(k / 10), 0.1)));
+    let row = |i: i32| f64::from(i) * 0.15 - 1.425;
+    points.extend((0..400).map(|k| DVec3::new(row(k % 20), row(k / 20), 0.1)));
     let s = samples(cloud(points, None));
-    assert!(10_060 < s.len(), "{}", s.len());
+    assert!(10_300 < s.len(), "{}", s.len());
     let held = |(p, h): (&DVec3, &f64)| s.points.iter().filter(|q| q.distance(*p) <= *h).count();
     let most = s.points.iter().zip(&s.widths).map(held).max().unwrap();
     println!("{} samples, the widest weight holds {most}", s.len());

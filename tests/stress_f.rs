@@ -151,7 +151,8 @@ fn f5_a_plane_fit_moves_a_torus_by_its_mean_curvature() {
 }
 
 /// A hundred to one: the error in each octave of local widths is some of F2's 0.485 h^4 / 4; random samples, whose own width
-/// varies, add to it. Ten thousand to one: weights from the thin end reach the dense one, by up to a hundredth of a local width.
+/// varies, add to it. Ten thousand to one: weights from the thin end reach the dense one, by a few thousandths of a local width; at
+/// the thin end, where h is 0.6 R, F2 itself is a hundredth.
 /// `PSS_LONG=1` sends 100,000 rays.
 #[test]
 fn f12_density_varying_a_hundred_to_one_leaves_no_odd_ray_and_errors_of_the_local_width() {
@@ -187,7 +188,7 @@ fn f12_density_varying_a_hundred_to_one_leaves_no_odd_ray_and_errors_of_the_loca
             let rms = [0, 1].map(|k| (by.iter().map(|e| e[k] * e[k]).sum::<f64>() / count).sqrt());
             println!("  {count} at widths from {least:.1e}: {:.2} of F2, {:.1e} widths", rms[0], rms[1]);
             if 20.0 < count {
-                assert!(rms[1] < 0.01 && (base > 10.0 || rms[0] < 4.0), "{rms:?}");
+                assert!(rms[1] < 0.02 && (base > 10.0 || rms[0] < 4.0), "{rms:?}");
             }
         }
     }

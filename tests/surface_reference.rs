@@ -213,7 +213,9 @@ fn f_itself_agrees_with_the_reference_for_every_plane_weight_and_degree() {
                     println!(
                         "{form:?}, gaussian {gaussian}, any way {mixed}, degree {degree}: {worst:.1e} at {compared}"
                     );
-                    assert!(worst < 1e-11 && 50 <= compared, "{worst:e} at {compared}");
+                    // A Gaussian is cut at six widths, which moments of the eighth power notice: 6^8 e^-36 is 4e-10.
+                    let allowed = if gaussian && degree == 4 { 1e-10 } else { 1e-11 };
+                    assert!(worst < allowed && 50 <= compared, "{worst:e} at {compared}");
                 }
             }
         }
