@@ -63,7 +63,7 @@ fn convert_keeps_every_bit_and_never_writes_over_its_input() {
         assert_eq!(ran.code, 0, "{}", ran.stderr);
         let second = read(&folder.read("b.ply")).unwrap();
         assert_eq!(first.points, second.points);
-        let apart = |(a, b): (&glam::DVec3, &glam::DVec3)| (*a - *b).length();
+        let apart = |(a, b): (&DVec3, &DVec3)| (*a - *b).length();
         let normals = |c: &pss::cloud::Cloud| c.normals.clone().unwrap();
         assert!(normals(&first).iter().zip(&normals(&second)).map(apart).all(|d| d < 1e-6));
     }
@@ -77,7 +77,7 @@ fn convert_keeps_every_bit_and_never_writes_over_its_input() {
 fn convert_adds_normals_and_drops_strays() {
     let folder = Folder::new();
     let mut points = sphere(2000, 1.0);
-    points.push(glam::DVec3::splat(5.0));
+    points.push(DVec3::splat(5.0));
     folder.write("a.ply", ply(&points));
     assert_eq!(folder.run(&["cloud", "convert", "--normals", "--clean", "a.ply", "b.ply"]).code, 0);
     let cloud = read(&folder.read("b.ply")).unwrap();
@@ -123,15 +123,24 @@ fn lengths_of_a_tiny_cloud_have_digits() {
 /// Strays once tied themselves to the surface in their midst and gave it weights as wide as the ball.
 #[test]
 fn a_dirty_cloud_of_ten_thousand_points_is_surveyed_in_ten_seconds() {
+    let mut clouds: Vec<(Vec<DVec3>, bool)> = Vec::new();
     for (seed, count) in [(0, 10), (1, 100), (2, 500), (3, 100)] {
         let mut stream = Stream::new(seed);
         let strays = (0..count).map(|_| stream.direction() * (0.5 + stream.unit()));
         let points: Vec<DVec3> = sphere(10_000, 1.0).into_iter().chain(strays).collect();
+        clouds.push((points, true));
+    }
+    // A thin sheet through the ball.
+    let row = |i: i32| f64::from(i) * 0.3 - 1.35;
+    let sheet = (0..100).map(|k| DVec3::new(row(k % 10), row(k / 10), 0.1));
+    clouds.push((sphere(10_000, 1.0).into_iter().chain(sheet).collect(), false));
+    for (points, solid) in clouds {
         let start = Instant::now();
         let text = info(ply(&points));
         let time = start.elapsed().as_secs_f64();
-        println!("{count} strays: {time:.1} s");
-        assert!(time < 10.0, "{time:.1} s");
-        assert!(text.contains("a Solid: 0 of 10000"), "{text}");
+        println!("{} points: {time:.1} s", points.len());
+        // Two sheets that cross take longer, by what the machine's other work adds.
+        assert!(time < if solid { 10.0 } else { 30.0 }, "{time:.1} s");
+        assert!(!solid || text.contains("a Solid: 0 of 10000"), "{text}");
     }
 }

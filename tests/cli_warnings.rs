@@ -164,9 +164,9 @@ fn weights_that_hold_hundreds_of_samples_are_warned_of_and_those_that_hold_thous
     );
     assert_eq!(said_of("draw points(\"a.ply\", smoothing: 3)\n", cloud()), "");
     for (argument, words) in [
-        ("h: 1", ["holds some 2", "0.0348 apart"]),
-        ("h: 5", ["more than the whole cloud", "0.0348 apart"]),
-        ("smoothing: 20", ["where 12 are usual", "0.0348 apart"]),
+        ("h: 1", ["holds some 2", "0.0349 apart"]),
+        ("h: 5", ["more than the whole cloud", "0.0349 apart"]),
+        ("smoothing: 20", ["where 12 are usual", "0.0349 apart"]),
         ("h: 0", ["`h` must be above zero", "write a number above zero"]),
     ] {
         let folder = Folder::new();

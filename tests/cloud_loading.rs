@@ -161,6 +161,8 @@ fn fibonacci(n: usize) -> Vec<DVec3> {
 #[derive(Debug, Default)]
 struct Harm {
     odd: usize,
+    /// Lines through the middle that do not meet the ball twice.
+    middle: usize,
     /// Chords with another number of crossings than those of the clean cloud.
     other: usize,
     /// Chords none of whose crossings is within reach of a kept stray, and the most that one of them is moved along the normal.
@@ -186,7 +188,10 @@ impl Harm {
             let (p, q) = (all(&a, &ray, &mut scratch), all(&b, &ray, &mut scratch));
             harm.odd += p.len() % 2;
             harm.other += usize::from(p.len() != q.len());
-            assert!(i % 8 != 0 || p.len() == 2, "a line through the middle of the ball");
+            if i % 8 == 0 && p.len() != 2 {
+                println!("a line through the middle of the ball: {d:?} {p:?} {q:?}");
+                harm.middle += 1;
+            }
             let far = |c: &Crossing| kept.iter().all(|k| reach < k.distance(ray.at(c.t)));
             let untouched = p.iter().chain(&q).all(far);
             harm.untouched += usize::from(untouched);
@@ -200,7 +205,7 @@ impl Harm {
     }
 }
 
-/// Strays nearer than half a spacing to the surface cannot be told from its samples: they stay. All others go, and no
+/// Strays nearer than a quarter of a spacing to the surface cannot be told from its samples: they stay. All others go, and no
 /// sample of the surface with them. `PSS_LONG=1` sends 100,000 chords through each cloud.
 fn strays_do_no_harm(case: &str, seeds: u64, make: impl Fn(u64) -> Dirty) {
     let chords = if std::env::var_os("PSS_LONG").is_some() { 100_000 } else { 800 };
@@ -220,10 +225,10 @@ fn strays_do_no_harm(case: &str, seeds: u64, make: impl Fn(u64) -> Dirty) {
             "{case} {seed}: {lost} of {} dropped, the farthest kept {highest:.2} spacings off; {harm:?}",
             dirty.strays.len()
         );
-        assert!(highest < 0.65);
+        assert!(highest < 0.4);
         let widest = s.widths.iter().fold(0.0f64, |a, b| a.max(*b));
         assert!(widest < 3.0 * spacing, "{widest}");
-        assert!(harm.odd == 0 && harm.moved <= 1e-6 && harm.most < 0.1 * spacing, "{harm:?}");
+        assert!(harm.odd + harm.middle == 0 && harm.moved <= 1e-6 && harm.most < 0.1 * spacing, "{harm:?}");
         assert!(chords < 4 * harm.untouched as u64);
     }
 }

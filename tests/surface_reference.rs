@@ -204,7 +204,7 @@ fn f_itself_agrees_with_the_reference_for_every_plane_weight_and_degree() {
                 for degree in 0..=4 {
                     let options = Options { gaussian, mixed, degree, tolerance: 1e-13, form };
                     // 15 coefficients fade below 22 effective samples, of which the reference knows nothing: wider weights then.
-                    let wider = if degree == 4 { 1.7 } else { 1.0 };
+                    let wider = if degree == 4 { 1.2 } else { 1.0 };
                     let usual = surface(&points, &normals, &options);
                     let samples = usual.samples();
                     let widths: Vec<f64> = samples.widths.iter().map(|h| wider * h).collect();
@@ -213,7 +213,9 @@ fn f_itself_agrees_with_the_reference_for_every_plane_weight_and_degree() {
                     println!(
                         "{form:?}, gaussian {gaussian}, any way {mixed}, degree {degree}: {worst:.1e} at {compared}"
                     );
-                    assert!(worst < 1e-11 && 50 <= compared, "{worst:e} at {compared}");
+                    // A Gaussian is cut at six widths, which moments of the eighth power notice: 6^8 e^-36 is 4e-10.
+                    let allowed = if gaussian && degree == 4 { 1e-10 } else { 1e-11 };
+                    assert!(worst < allowed && 50 <= compared, "{worst:e} at {compared}");
                 }
             }
         }

@@ -5,8 +5,9 @@
 //! fitted again, has a root mean square distance e from them; the sample lies d off it. On a smooth surface the plane
 //! of its neighbours is as far from a sample as from its neighbours: d / e is at most 1.7 for even samples (the mean of a
 //! quadratic height over a disc against its deviation), was seen up to 4 on random ones, on edges and corners of cubes and under Gaussian
-//! noise; so a sample is lone where `6 e < d`, and where d is also half the spacing of its neighbours: nearer ones
-//! hardly move the surface. It must stand over them, not beside: there the plane only extrapolates.
+//! noise; so a sample is lone where `6 e < d`, and where d is also a quarter of the spacing of its neighbours: nearer ones
+//! hardly move the surface. It must stand over them, not beside: there the plane only extrapolates. (A
+//! sample of a thin sheet that is nearer to a dense sheet than to its own kind is lone too: where the two meet at an edge, some of a row.)
 //!
 //! *Strewn*: within four of its own spacings lie sixteen samples three times as dense, and those no denser than that, its peers, are
 //! fewer than six, or fill space with it: the least eigenvalue of their weighted covariance is more than a tenth of the
@@ -24,7 +25,7 @@ use crate::num::eigen::symmetric3;
 /// See the module.
 const LONE: f64 = 6.0;
 /// Shares of the neighbours' spacing that a lone sample is off at least.
-const OFF: f64 = 0.5;
+const OFF: f64 = 0.25;
 /// So many of the neighbours may be strays themselves.
 const TRIMMED: usize = 2;
 /// Fewer neighbours than this do not tell a sheet.

@@ -19,6 +19,8 @@ const NEIGHBOURS: usize =
 /// With a twentieth of the samples strewn through and about a ball the fifth round found none; a spike one sample high
 /// loses no more samples of its end than this.
 const STRAY_ROUNDS: usize = 6;
+/// A round that finds fewer than one in so many samples is the last: large scans always have a few more.
+const SETTLED: usize = 10_000;
 
 /// Where normals come from.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -84,6 +86,7 @@ impl Samples {
         }
         let Cloud { points, normals, colors, mut notes, .. } = cloud;
         let Measured { table, spacing, widths } = measured;
+        let widths = spacing::capped(&points, &spacing, widths);
         let scene = Scene { points: &points, table: &table, widths: &widths };
         let given = normals.filter(|_| options.normals == NormalSource::File);
         let oriented = given.map_or_else(|| normals::from_points(scene), |n| normals::from_file(scene, n));
@@ -122,13 +125,17 @@ fn without_strays(mut cloud: Cloud, mut measured: Measured) -> Result<(Cloud, Me
     let before = cloud.points.len();
     for _ in 0..STRAY_ROUNDS {
         let stray = strays::strays(&cloud.points, &measured.spacing, &measured.widths, &measured.table);
-        if !stray.contains(&true) {
+        let found = stray.iter().filter(|stray| **stray).count();
+        if found == 0 {
             break;
         }
         let kept: Vec<u32> = (0..).zip(&stray).filter(|(_, stray)| !**stray).map(|(i, _)| i).collect();
         cloud = order::select(cloud, &kept);
         check_extent(&cloud.points)?;
         measured = Measured::new(&cloud.points);
+        if found * SETTLED < before {
+            break;
+        }
     }
     let gone = before - cloud.points.len();
     if 0 < gone {

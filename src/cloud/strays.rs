@@ -11,6 +11,10 @@ use super::normals::{NORMAL_NEIGHBOURS, roughness};
 /// how many samples a weight of ordinary width holds.
 const LEAST_GROUP: usize = 12;
 
+/// Thin groups of fewer samples beside a body are strays however they lie: a handful of twenty among hundreds strewn in space
+/// was seen to lie flat by chance.
+const LEAST_SHEET: usize = 64;
+
 /// Groups with at least this share of all samples are the body, and never strays.
 const BODY: f64 = 0.05;
 
@@ -28,7 +32,8 @@ const ROUGH: f64 = 0.1;
 /// Whether each sample is a stray: [`loose`] by itself, or of a stray group. Two samples belong together if one is among the
 /// other's nearest and no farther than the geometric mean of their widths: a lone sample more than some 3.5 spacings off
 /// a surface is not of it. A group is stray if it has fewer than [`LEAST_GROUP`] samples (in clouds of more),
-/// or if it is no part of the body and its median sample is both thinly strewn for its place and not on a surface:
+/// or if it is no part of the body and its median sample is thinly strewn for its place, and either not on a surface or one of fewer than
+/// [`LEAST_SHEET`]:
 /// such as what is left inside a body of which only the skin was wanted.
 ///
 /// All rules are relative, so a cloud of uneven density keeps its sparse parts as long as they are smooth. What is left may
@@ -57,7 +62,8 @@ fn of_groups(points: &[DVec3], spacing: &[f64], widths: &[f64], table: &Table, s
     };
     for group in groups.iter().filter(|group| !is_body(group)) {
         let is_stray = group.len() < LEAST_GROUP.min(largest)
-            || THIN < median(group, &mut thinness) && ROUGH < roughness_of(points, group);
+            || THIN < median(group, &mut thinness)
+                && (group.len() < LEAST_SHEET || ROUGH < roughness_of(points, group));
         group.iter().for_each(|&i| strays[i as usize] |= is_stray);
     }
 }
