@@ -66,6 +66,7 @@ fn measure(points: &[DVec3], normals: &[DVec3], h: f64, degree: usize) -> Vec<Ro
         gaussian: false,
         same_way: false,
         degree,
+        levin: false,
     };
     (0..CHORDS)
         .into_par_iter()

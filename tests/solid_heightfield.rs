@@ -186,25 +186,6 @@ fn d1_c2_scaling_changes_no_bit_and_far_rays_find_the_same() {
     }
 }
 
-#[test]
-fn many_pixels_cost_little_more_than_few() {
-    let time = |n: usize| {
-        let made = HeightField::new(
-            field(n, n, |i, j| 0.5 + 0.2 * ((i * 20 / n) as f32).sin() * ((j * 20 / n) as f32).cos()),
-            dvec3(1.0, 1.0, 0.2),
-        );
-        let mut stream = Stream::new(5);
-        let rays: Vec<Ray> = (0..3000).map(|_| Ray::chord(&mut stream, dvec3(0.0, 0.0, 0.1), 0.6)).collect();
-        let began = std::time::Instant::now();
-        let count: usize = rays.iter().map(|r| crossings(&made, r).len()).sum();
-        assert!(1000 < count);
-        began.elapsed().as_secs_f64() / rays.len() as f64
-    };
-    let (small, large) = (time(32), time(2048));
-    eprintln!("a ray: {:.2} us at 32 x 32 pixels, {:.2} us at 2048 x 2048", 1e6 * small, 1e6 * large);
-    assert!(large < 64.0 * small, "{small} {large}");
-}
-
 // Files.
 
 fn png(image: image::DynamicImage) -> Vec<u8> {

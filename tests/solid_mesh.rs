@@ -232,20 +232,3 @@ fn d1_scaling_by_a_power_of_two_and_both_zeros_change_no_bit() {
         }
     }
 }
-
-#[test]
-fn a_large_mesh_costs_little_more_than_a_small_one() {
-    let time = |levels| {
-        let (points, triangles) = sphere(levels);
-        let mesh = made(points, triangles);
-        let mut stream = Stream::new(8);
-        let rays: Vec<Ray> = (0..20_000).map(|_| Ray::chord(&mut stream, DVec3::ZERO, 1.2)).collect();
-        let began = std::time::Instant::now();
-        let count: usize = rays.iter().map(|r| crossings(&mesh, r).len()).sum();
-        assert!(20_000 < count);
-        began.elapsed().as_secs_f64() / rays.len() as f64
-    };
-    let (small, large) = (time(2), time(7));
-    eprintln!("a ray: {:.2} us at 128 triangles, {:.2} us at 131,072", 1e6 * small, 1e6 * large);
-    assert!(large < 30.0 * small, "{small} {large}");
-}

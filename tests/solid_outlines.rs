@@ -325,29 +325,6 @@ fn boxes_hold_every_crossing_and_touch_the_solid() {
 }
 
 #[test]
-fn a_long_outline_is_not_searched_edge_by_edge() {
-    // A thousand times the edges cost a few times as much, not a thousand times.
-    let time = |n: usize| {
-        let round: Vec<[f64; 2]> =
-            (0..n).map(|i| TAU * i as f64 / n as f64).map(|a| [2.0 + a.cos(), a.sin()]).collect();
-        let made: [Box<dyn Solid>; 2] = [
-            Box::new(Extrusion::new(outline(&vec![round.clone()]), 1.0, 0.0, DVec2::ONE)),
-            Box::new(Revolution::new(outline(&vec![round]), TAU)),
-        ];
-        let mut stream = Stream::new(10);
-        let rays: Vec<Ray> = (0..2000).map(|_| random_ray(&mut stream, &made[1].bounds()).0).collect();
-        let began = std::time::Instant::now();
-        let count: usize =
-            rays.iter().map(|r| made.iter().map(|m| crossings(&**m, r).len()).sum::<usize>()).sum();
-        assert!(1000 < count);
-        began.elapsed().as_secs_f64()
-    };
-    let (small, large) = (time(20), time(20_000));
-    eprintln!("4,000 questions: {small:.4} s at 20 edges, {large:.4} s at 20,000");
-    assert!(large < 100.0 * small, "{small} {large}");
-}
-
-#[test]
 fn scenes_make_outlines_with_holes_and_tell_what_is_wrong_with_them() {
     let lengths = |text: &str, o: [f64; 3], d: [f64; 3]| -> Vec<f64> {
         let shot = scene::shot(text);
