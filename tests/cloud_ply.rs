@@ -8,7 +8,6 @@ use cloud_common::{fibonacci_sphere, scan};
 use glam::DVec3;
 use pss::cloud::ply::Cut;
 use pss::cloud::{Cloud, CloudError, CloudFault, ply};
-use pss::num::hash::Stream;
 
 const XYZ: &str = "property float x\nproperty float y\nproperty float z\n";
 const FOUR: &str = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";

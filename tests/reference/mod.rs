@@ -182,7 +182,7 @@ impl Reference {
             if moved < 1e-15 {
                 break;
             }
-            if !(t.abs() < 2.0 * h) {
+            if t.is_nan() || 2.0 * h <= t.abs() {
                 return None;
             }
         }
