@@ -211,6 +211,8 @@ fn no_sample_of_a_surface_is_a_stray() {
         let allowed = match name {
             "cube with a dense half" => count / 1000,
             "ball, 10,000 to 1" => 1,
+            // The tail of the noise.
+            "noisy ball" => count / 200,
             _ => 0,
         };
         assert!(count <= s.len() + allowed, "{name}");

@@ -4,8 +4,8 @@
 //! *Lone*: the plane of least squares through the 16 nearest others, the two farthest off it left out and the plane
 //! fitted again, has a root mean square distance e from them; the sample lies d off it. On a smooth surface the plane
 //! of its neighbours is as far from a sample as from its neighbours: d / e is at most 1.7 for even samples (the mean of a
-//! quadratic height over a disc against its deviation), was seen up to 4 on random ones, on edges and corners of cubes and under Gaussian
-//! noise; so a sample is lone where `6 e < d`, and where d is also a quarter of the spacing of its neighbours: nearer ones
+//! quadratic height over a disc against its deviation), was seen up to 4 on random ones, on edges and corners of cubes (under Gaussian noise three of
+//! a thousand samples exceed six); so a sample is lone where `6 e < d`, and where d is also a quarter of the spacing of its neighbours: nearer ones
 //! hardly move the surface. It must stand over them, not beside: there the plane only extrapolates. (A
 //! sample of a thin sheet that is nearer to a dense sheet than to its own kind is lone too: where the two meet at an edge, some of a row.)
 //!
