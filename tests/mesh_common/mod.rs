@@ -9,7 +9,9 @@ use pss::solid::{Crossing, Scratch, Solid};
 
 pub fn crossings(solid: &dyn Solid, ray: &Ray) -> Vec<Crossing> {
     let mut out = Vec::new();
-    solid.crossings(ray, Interval::ALL, &mut Scratch::default(), &mut out);
+    let mut scratch = Scratch::default();
+    solid.crossings(ray, Interval::ALL, &mut scratch, &mut out);
+    assert_eq!(scratch.counts.parity_repairs, 0, "an odd line: {out:?} {ray:?}");
     assert!(out.len().is_multiple_of(2), "{out:?} {ray:?}");
     for (i, c) in out.iter().enumerate() {
         assert!(c.t.is_finite() && c.entering == (i % 2 == 0), "{out:?} {ray:?}");
