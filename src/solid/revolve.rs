@@ -174,6 +174,10 @@ impl Line {
     fn roots(&self, [a, b]: [DVec2; 2], mut show: impl FnMut(f64)) {
         let (dr, dz) = (b.x - a.x, b.y - a.y);
         let (p, d) = (self.ray.origin, self.ray.dir);
+        if a.x == 0.0 && b.x == 0.0 {
+            // An edge on the axis sweeps nothing.
+            return;
+        }
         if dz == 0.0 {
             if d.z != 0.0 {
                 show((a.y - p.z) / d.z);
@@ -182,7 +186,9 @@ impl Line {
         }
         let range = self.between(a.y.min(b.y), a.y.max(b.y));
         // Through the tip of a cone both halves are met in a double root.
-        [a, b].iter().filter(|end| end.x == 0.0 && d.z != 0.0).for_each(|end| show((end.y - p.z) / d.z));
+        let at_height = |end: &DVec2| (end.y - p.z) / d.z;
+        let tips = [a, b].into_iter().filter(|end| end.x == 0.0 && d.z != 0.0).map(|end| at_height(&end));
+        tips.filter(|t| self.ray.at(*t).xy().length() <= self.slack).for_each(&mut show);
         let (x, v) = (dz * p.xy(), dz * d.xy());
         let (l, m) = (a.x * dz + dr * (p.z - a.y), dr * d.z);
         let (root, speed) = (x.length(), v.length_squared());
