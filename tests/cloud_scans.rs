@@ -3,7 +3,6 @@
 
 mod cloud_common;
 
-use std::collections::HashMap;
 use std::time::Instant;
 
 use cloud_common::scan;
@@ -80,9 +79,12 @@ fn clean_scans_lose_nothing_and_their_normals_are_found_again() {
     }
 }
 
+/// `PSS_LONG=1` tries all of them.
 #[test]
 fn rough_scans_give_samples() {
-    for name in ["lion.ply", "pump.ply", "cactus.ply", "bunny_raw.ply"] {
+    let all = ["cactus.ply", "lion.ply", "pump.ply", "bunny_raw.ply"];
+    let long = std::env::var_os("PSS_LONG").is_some();
+    for name in &all[..if long { all.len() } else { 1 }] {
         let Some(cloud) = read(name) else { return };
         println!("{name}");
         let samples = if cloud.normals.is_some() {
@@ -92,38 +94,5 @@ fn rough_scans_give_samples() {
             samples(&cloud, &SampleOptions::default())
         };
         assert!(samples.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-12));
-    }
-}
-
-/// `bunny_raw.scans.txt`: for each range scan its name, first point, count, and the direction to its sensor.
-#[test]
-fn estimated_normals_face_the_sensors() {
-    for (name, least) in [("bunny_raw", 0.98), ("happy_raw", 0.85)] {
-        let (Some(cloud), Some(list)) = (read(&format!("{name}.ply")), scan(&format!("{name}.scans.txt")))
-        else {
-            return;
-        };
-        let bits = |p: &DVec3| p.to_array().map(f64::to_bits);
-        let mut sensor_of = HashMap::new();
-        for line in std::fs::read_to_string(list).unwrap().lines() {
-            let words: Vec<&str> = line.split_whitespace().collect();
-            let numbers: Vec<f64> = words.iter().skip(1).filter_map(|w| w.parse().ok()).collect();
-            let [first, count, x, y, z] = numbers[..] else { continue };
-            for p in &cloud.points[first as usize..(first + count) as usize] {
-                sensor_of.insert(bits(p), DVec3::new(x, y, z));
-            }
-        }
-        println!("{name}");
-        let samples = samples(&cloud, &SampleOptions::default());
-        let pairs = samples
-            .points
-            .iter()
-            .zip(&samples.normals)
-            .filter_map(|(p, n)| Some((sensor_of.get(&bits(p))?, n)));
-        let (all, right) =
-            pairs.fold((0usize, 0), |(all, right), (d, n)| (all + 1, right + usize::from(0.0 < d.dot(*n))));
-        let share = right as f64 / all as f64;
-        println!("  {share:.5} of {all} samples face their sensor");
-        assert!(least < share && samples.len() / 2 < all, "{name}: {share}");
     }
 }

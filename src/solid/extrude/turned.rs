@@ -11,7 +11,7 @@ use crate::solid::{Crossing, parity};
 ///
 /// With (X, Y) the ray's point turned back, m its scales, n the edge's unit normal and c = n . a:
 /// F = n_x m_y X + n_y m_x Y - c m_x m_y, zero on the plane of the edge. X' = w' Y + .., Y' = -w' X + .. (w' radians per
-/// t), m' is constant; so F'' has the bound of [`Reach::bend`].
+/// t), m' is constant; so F'' has the bound of `bend` in `roots`.
 #[derive(Clone, Copy)]
 struct Local {
     xy: DVec2,
