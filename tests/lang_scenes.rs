@@ -38,15 +38,8 @@ fn drawn(text: &str) -> Shape {
 fn leaf(shape: &Shape) -> (&Call, &str) {
     match &shape.0.kind {
         ShapeKind::Leaf { call, name } => (call, name),
-        ShapeKind::Transform { child, .. }
-        | ShapeKind::Fit { child, .. }
-        | ShapeKind::With { child, .. }
-        | ShapeKind::Cut { child, .. }
-        | ShapeKind::Close { child, .. }
-        | ShapeKind::Thicken { child, .. }
-        | ShapeKind::Offset { child, .. }
-        | ShapeKind::Clip { child, .. } => leaf(child),
         ShapeKind::Boolean { .. } => panic!("not a leaf: {shape:?}"),
+        other => leaf(other.children().next().expect("a child")),
     }
 }
 

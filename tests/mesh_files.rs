@@ -4,15 +4,18 @@
 mod cli_common;
 #[path = "mesh_common/mod.rs"]
 mod mesh_common;
+#[path = "spans_common/mod.rs"]
+mod spans_common;
 
 use cli_common::Folder;
 use glam::{DVec3, dvec3};
-use mesh_common::{crossings, cube, made};
+use mesh_common::{cube, made};
 use pss::geom::{Interval, Ray};
 use pss::mesh::read;
 use pss::num::hash::Stream;
 use pss::solid::mesh::TriangleMesh;
 use pss::solid::{Body, Scratch, Solid};
+use spans_common::crossings;
 
 fn ascii_ply((points, triangles): &(Vec<DVec3>, Vec<[u32; 3]>)) -> String {
     let head = "property double x\nproperty double y\nproperty double z\n";

@@ -2,28 +2,20 @@
 
 #[path = "cli_common/mod.rs"]
 mod cli_common;
+#[path = "spans_common/mod.rs"]
+mod spans_common;
 
 use std::io::Cursor;
 
 use cli_common::Folder;
 use glam::{DVec2, DVec3, dvec3};
-use pss::geom::{Aabb, Interval, Ray};
+use pss::geom::{Aabb, Ray};
 use pss::heights::{Heights, read_from};
 use pss::num::hash::Stream;
 use pss::solid::block::Block;
 use pss::solid::heightfield::HeightField;
-use pss::solid::{Crossing, Scratch, Solid};
-
-fn crossings(solid: &dyn Solid, ray: &Ray) -> Vec<Crossing> {
-    let mut out = Vec::new();
-    solid.crossings(ray, Interval::ALL, &mut Scratch::default(), &mut out);
-    assert!(out.len().is_multiple_of(2), "{out:?} {ray:?}");
-    for (i, c) in out.iter().enumerate() {
-        assert!(c.t.is_finite() && c.entering == (i % 2 == 0), "{out:?} {ray:?}");
-    }
-    assert!(out.windows(2).all(|w| w[0].t < w[1].t), "{out:?} {ray:?}");
-    out
-}
+use pss::solid::{Scratch, Solid};
+use spans_common::{assert_is_box, crossings};
 
 fn field(width: usize, depth: usize, of: impl Fn(usize, usize) -> f32) -> Heights {
     let values = (0..depth).flat_map(|j| (0..width).map(move |i| (i, j))).map(|(i, j)| of(i, j)).collect();
@@ -41,29 +33,7 @@ fn hills(width: usize, depth: usize) -> Heights {
 fn a_flat_field_is_a_box_also_in_its_faces() {
     let made = HeightField::new(field(5, 4, |_, _| 0.5), dvec3(4.0, 2.0, 6.0));
     let block = Block(Aabb { min: dvec3(-2.0, -1.0, 0.0), max: dvec3(2.0, 1.0, 3.0) });
-    let mut stream = Stream::new(1);
-    let mut hits = 0;
-    for i in 0..20_000 {
-        let ray = if i % 2 == 0 {
-            Ray::chord(&mut stream, block.0.center(), 3.0)
-        } else {
-            let mut whole = || (stream.unit() * 5.0).floor() - 2.0;
-            let origin = dvec3(whole(), whole(), whole());
-            let step = |x: f64| x.rem_euclid(3.0) - 1.0;
-            let dir = dvec3(step(whole()), step(whole()), step(whole()));
-            if dir == DVec3::ZERO {
-                continue;
-            }
-            Ray::new(origin, dir)
-        };
-        let (have, want) = (crossings(&made, &ray), crossings(&block, &ray));
-        assert_eq!(have.len(), want.len(), "{ray:?} {have:?} {want:?}");
-        hits += want.len();
-        for (a, b) in have.iter().zip(&want) {
-            assert!((a.t - b.t).abs() <= 1e-13 * (1.0 + b.t.abs()), "{ray:?} {a:?} {b:?}");
-        }
-    }
-    assert!(10_000 < hits);
+    assert_is_box(&made, &block, 20_000, 3.0, 1e-13, |_, _, _| ());
 }
 
 #[test]

@@ -2,15 +2,18 @@
 
 #[path = "mesh_common/mod.rs"]
 mod mesh_common;
+#[path = "spans_common/mod.rs"]
+mod spans_common;
 
 use std::f64::consts::PI;
 
 use glam::{DVec3, dvec3};
-use mesh_common::{crossings, cube, made};
+use mesh_common::{cube, made};
 use pss::geom::{Aabb, Ray};
 use pss::num::hash::Stream;
 use pss::solid::block::Block;
 use pss::solid::{Body, Scratch, Solid};
+use spans_common::{assert_is_box, crossings};
 
 /// A sphere, an octahedron halved so often, its triangles all round the same way.
 fn sphere(levels: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
@@ -58,29 +61,7 @@ fn a_mesh_of_a_cube_is_a_box_also_in_its_faces_and_edges() {
     let (points, triangles) = cube(block.0.min, block.0.max);
     let mesh = made(points, triangles);
     assert_eq!(mesh.body(), Body::Solid);
-    let mut stream = Stream::new(1);
-    let mut hits = 0;
-    for i in 0..40_000 {
-        let ray = if i % 2 == 0 {
-            Ray::chord(&mut stream, block.0.center(), 2.5)
-        } else {
-            let mut whole = || (stream.unit() * 5.0).floor() - 2.0;
-            let origin = dvec3(whole(), whole(), whole());
-            let step = |x: f64| x.rem_euclid(3.0) - 1.0;
-            let dir = dvec3(step(whole()), step(whole()), step(whole()));
-            if dir == DVec3::ZERO {
-                continue;
-            }
-            Ray::new(origin, dir)
-        };
-        let (have, want) = (crossings(&mesh, &ray), crossings(&block, &ray));
-        assert_eq!(have.len(), want.len(), "{ray:?} {have:?} {want:?}");
-        hits += want.len();
-        for (a, b) in have.iter().zip(&want) {
-            assert!((a.t - b.t).abs() <= 1e-13 * (1.0 + b.t.abs()), "{ray:?} {a:?} {b:?}");
-        }
-    }
-    assert!(10_000 < hits);
+    assert_is_box(&mesh, &block, 40_000, 2.5, 1e-13, |_, _, _| ());
 }
 
 #[test]

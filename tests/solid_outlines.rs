@@ -5,12 +5,14 @@
 mod csg_support;
 #[path = "outline_common/mod.rs"]
 mod outline_common;
+#[path = "spans_common/mod.rs"]
+mod spans_common;
 
 use std::f64::consts::TAU;
 
 use csg_support::scene;
 use glam::{DVec2, DVec3, dvec3};
-use outline_common::{Loops, crossings, ell, outline, shapes, star, winds};
+use outline_common::{Loops, ell, outline, shapes, star, winds};
 use pss::geom::{Aabb, Interval, Ray};
 use pss::num::hash::Stream;
 use pss::solid::block::Block;
@@ -18,6 +20,7 @@ use pss::solid::cylinder::Cylinder;
 use pss::solid::extrude::Extrusion;
 use pss::solid::revolve::Revolution;
 use pss::solid::{Scratch, Solid};
+use spans_common::{assert_is_box, crossings};
 
 /// Every state along a ray is what the oracle says, but within a hair of a crossing. How many spans there were.
 fn check(solid: &dyn Solid, inside: &dyn Fn(DVec3) -> bool, ray: &Ray, around: Interval) -> usize {
@@ -61,34 +64,13 @@ fn an_extruded_square_is_a_box() {
         DVec2::ONE,
     );
     let block = Block(Aabb { min: dvec3(-1.0, -1.0, 0.0), max: dvec3(2.0, 1.0, 3.0) });
-    let mut stream = Stream::new(1);
-    let mut hits = 0;
-    for i in 0..20_000 {
-        let ray = if i % 2 == 0 {
-            random_ray(&mut stream, &block.0).0
-        } else {
-            // Through corners, along edges, in faces: from a lattice along one of 26 ways.
-            let mut whole = || (stream.unit() * 5.0).floor() - 2.0;
-            let origin = dvec3(whole(), whole(), whole());
-            let step = |x: f64| x.rem_euclid(3.0) - 1.0;
-            let dir = dvec3(step(whole()), step(whole()), step(whole()));
-            if dir == DVec3::ZERO {
-                continue;
-            }
-            Ray::new(origin, dir)
-        };
-        let (have, want) = (crossings(&made, &ray), crossings(&block, &ray));
-        assert_eq!(have.len(), want.len(), "{ray:?} {have:?} {want:?}");
-        hits += want.len();
-        for (a, b) in have.iter().zip(&want) {
-            assert!((a.t - b.t).abs() <= 1e-14 * (1.0 + b.t.abs()) * 8.0, "{ray:?} {a:?} {b:?}");
-            let scratch = &mut Scratch::default();
-            let normals = (made.normal(&ray, a, scratch), block.normal(&ray, b, scratch));
-            // On an edge either face may be told.
-            assert!(normals.0 == normals.1 || i % 2 == 1, "{ray:?} {normals:?}");
-        }
-    }
-    assert!(10_000 < hits);
+    let radius = 0.5 * block.0.diagonal();
+    assert_is_box(&made, &block, 20_000, radius, 8e-14, |ray, lattice, [a, b]| {
+        let scratch = &mut Scratch::default();
+        let normals = (made.normal(ray, a, scratch), block.normal(ray, b, scratch));
+        // On an edge either face may be told.
+        assert!(normals.0 == normals.1 || lattice, "{ray:?} {normals:?}");
+    });
 }
 
 #[test]

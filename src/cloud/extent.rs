@@ -21,7 +21,7 @@ pub fn is_single(points: &[DVec3]) -> bool {
 /// The distance between neighbouring coordinates of `points` where they are farthest from the origin, in the precision
 /// they really have; world length.
 pub fn coordinate_step(points: &[DVec3], bounds: &Aabb) -> f64 {
-    let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let farthest = bounds.farthest();
     farthest * if is_single(points) { f64::from(f32::EPSILON) } else { tolerance::EPS }
 }
 

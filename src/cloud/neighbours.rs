@@ -8,9 +8,6 @@ use super::tree::Tree;
 /// Points of a leaf: few enough to look at each, enough that boxes cost less than points.
 const LEAF: usize = 8;
 
-/// Deeper than any tree of 2^32 points halved at each level.
-const STACK: usize = 64;
-
 /// Rows a thread takes at a time.
 const CHUNK: usize = 1024;
 
@@ -71,27 +68,13 @@ impl Neighbours {
         if k == 0 || self.points.is_empty() {
             return;
         }
-        let mut stack = [(0.0, 0usize); STACK];
-        let mut depth = 1;
-        while 0 < depth {
-            depth -= 1;
-            let (distance, node) = stack[depth];
+        self.tree.walk_near(
+            x,
+            out,
             // At equal distance a smaller index may still come.
-            if out.len() == k && out[k - 1].distance_squared < distance {
-                continue;
-            }
-            if self.tree.is_leaf(node) {
-                self.visit_leaf(node, x, |near| keep(out, k, near));
-                continue;
-            }
-            let mut children =
-                self.tree.children(node).map(|c| (self.tree.nodes[c].bounds.distance_squared(x), c));
-            if children[0].0 < children[1].0 {
-                children.swap(0, 1);
-            }
-            stack[depth..depth + 2].copy_from_slice(&children);
-            depth += 2;
-        }
+            |out, distance, _| !(out.len() == k && out[k - 1].distance_squared < distance),
+            |out, node| self.visit_leaf(node, x, |near| keep(out, k, near)),
+        );
     }
 
     /// The points at most `radius` from `x`, into `out`.

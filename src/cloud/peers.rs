@@ -7,8 +7,6 @@ use super::tree::Tree;
 
 /// Samples of a leaf.
 const LEAF: usize = 8;
-/// Deeper than any tree of 2^32 samples halved at each level.
-const STACK: usize = 64;
 
 /// Samples and their spacing, ready to be asked.
 pub struct Peers<'a> {
@@ -62,32 +60,22 @@ impl Peers<'_> {
     pub fn nearest(&self, own: u32, least: f64, k: usize, out: &mut Vec<Near>) {
         out.clear();
         let x = self.points[own as usize];
-        let mut stack = [(0.0, 0usize); STACK];
-        let mut depth = 1;
-        while 0 < depth {
-            depth -= 1;
-            let (distance, node) = stack[depth];
-            if self.ranges[node][1] < least || out.len() == k && out[k - 1].distance_squared < distance {
-                continue;
-            }
-            if !self.tree.is_leaf(node) {
-                let mut children =
-                    self.tree.children(node).map(|c| (self.tree.nodes[c].bounds.distance_squared(x), c));
-                if children[0].0 < children[1].0 {
-                    children.swap(0, 1);
+        self.tree.walk_near(
+            x,
+            out,
+            |out, distance, node| {
+                least <= self.ranges[node][1] && !(out.len() == k && out[k - 1].distance_squared < distance)
+            },
+            |out, node| {
+                let at = &self.tree.nodes[node];
+                for &index in &self.tree.order[at.start as usize..at.end as usize] {
+                    if index != own && least <= self.spacing[index as usize] {
+                        let distance_squared = self.points[index as usize].distance_squared(x);
+                        keep(out, k, Near { distance_squared, index });
+                    }
                 }
-                stack[depth..depth + 2].copy_from_slice(&children);
-                depth += 2;
-                continue;
-            }
-            let at = &self.tree.nodes[node];
-            for &index in &self.tree.order[at.start as usize..at.end as usize] {
-                if index != own && least <= self.spacing[index as usize] {
-                    let distance_squared = self.points[index as usize].distance_squared(x);
-                    keep(out, k, Near { distance_squared, index });
-                }
-            }
-        }
+            },
+        );
     }
 }
 

@@ -18,6 +18,9 @@ pub struct Node {
     pub skip: u32,
 }
 
+/// Deeper than any tree of 2^32 points halved at each level.
+const STACK: usize = 64;
+
 /// The nodes, and the points' order.
 #[derive(Clone, Debug)]
 pub struct Tree {
@@ -79,5 +82,35 @@ impl Tree {
     /// The children of a node that is no leaf.
     pub fn children(&self, node: usize) -> [usize; 2] {
         [node + 1, self.nodes[node + 1].skip as usize]
+    }
+
+    /// Walks to the leaves, the nearer child first. `worth` is told the squared distance of a node's box from `x`, and says
+    /// whether to look into it; both see what the walk gathers.
+    pub fn walk_near<S>(
+        &self,
+        x: DVec3,
+        gathered: &mut S,
+        worth: impl Fn(&S, f64, usize) -> bool,
+        mut leaf: impl FnMut(&mut S, usize),
+    ) {
+        let mut stack = [(0.0, 0usize); STACK];
+        let mut depth = usize::from(!self.nodes.is_empty());
+        while 0 < depth {
+            depth -= 1;
+            let (distance, node) = stack[depth];
+            if !worth(gathered, distance, node) {
+                continue;
+            }
+            if self.is_leaf(node) {
+                leaf(gathered, node);
+                continue;
+            }
+            let mut children = self.children(node).map(|c| (self.nodes[c].bounds.distance_squared(x), c));
+            if children[0].0 < children[1].0 {
+                children.swap(0, 1);
+            }
+            stack[depth..depth + 2].copy_from_slice(&children);
+            depth += 2;
+        }
     }
 }

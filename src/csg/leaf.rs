@@ -34,11 +34,8 @@ impl Leaf {
     /// The largest length of the leaf that enters its rounding errors: its size and its distance from the world's
     /// origin.
     pub fn scale(&self) -> f64 {
-        let reach = if self.bounds.is_finite() && !self.bounds.is_empty() {
-            self.bounds.min.abs().max(self.bounds.max.abs()).max_element()
-        } else {
-            0.0
-        };
+        let reach =
+            if self.bounds.is_finite() && !self.bounds.is_empty() { self.bounds.farthest() } else { 0.0 };
         reach.max(self.place.offset())
     }
 

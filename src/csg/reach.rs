@@ -63,7 +63,7 @@ fn slack(bounds: &Aabb) -> Aabb {
     if bounds.is_empty() || !bounds.is_finite() {
         return *bounds;
     }
-    let scale = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let scale = bounds.farthest();
     bounds.inflated(4.0 * tolerance::cleanup(scale))
 }
 

@@ -80,6 +80,11 @@ impl Aabb {
         self.size().length()
     }
 
+    /// The largest coordinate of any corner in size: how far it reaches from the origin along an axis.
+    pub fn farthest(&self) -> f64 {
+        self.min.abs().max(self.max.abs()).max_element()
+    }
+
     /// The eight corners.
     pub fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|i| {

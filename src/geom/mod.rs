@@ -1,6 +1,7 @@
 //! Rays, ranges of them, boxes and placements, all `f64`; and the one place where tolerances are set.
 
 mod aabb;
+pub mod halves;
 mod interval;
 mod placement;
 mod ray;

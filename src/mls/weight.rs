@@ -4,6 +4,7 @@
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 
 use crate::num::lanes::{LANES, Lanes};
+use crate::num::power::{LN2_HI, LN2_LO, TAYLOR};
 
 /// A weight theta(rho), where rho is the squared distance over the squared width of the sample.
 pub trait Weight: Copy + Send + Sync + std::fmt::Debug + 'static {
@@ -146,23 +147,12 @@ impl Facing for SameWay {
 fn exp_minus<S: Simd>(simd: S, x: Lanes<S>) -> Lanes<S> {
     // Adding 1.5 * 2^52 rounds to the nearest whole number and leaves it in the low bits.
     const ROUND: f64 = 6_755_399_441_055_744.0;
-    const LN2_HI: f64 = 0.693_147_180_369_123_8;
-    const LN2_LO: f64 = 1.908_214_929_270_587_7e-10;
-    const C: [f64; 14] = {
-        let mut c = [1.0; 14];
-        let mut k = 1;
-        while k < 14 {
-            c[k] = c[k - 1] / k as f64;
-            k += 1;
-        }
-        c
-    };
     let x = -x.min(Lanes::splat(simd, 700.0));
     let shifted = x * std::f64::consts::LOG2_E + ROUND;
     let k = shifted - ROUND;
     let f = (x - k * LN2_HI) - k * LN2_LO;
-    let mut p = Lanes::splat(simd, C[13]);
-    for c in C[..13].iter().rev() {
+    let mut p = Lanes::splat(simd, TAYLOR[13]);
+    for c in TAYLOR[..13].iter().rev() {
         p = p * f + *c;
     }
     let power = |s: f64| f64::from_bits(s.to_bits().wrapping_add(1023) << 52);

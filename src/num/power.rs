@@ -1,29 +1,34 @@
 //! Logarithm and exponential by additions, products and quotients alone, so that the bits are the same on every
 //! machine: those of the system differ between platforms.
 
+/// ln 2 in two parts: whole multiples of the first, up to a thousand, are exact.
+pub(crate) const LN2_HI: f64 = 0.693_147_180_369_123_8;
+/// The rest of it.
+pub(crate) const LN2_LO: f64 = 1.908_214_929_270_587_7e-10;
+
+/// 1 / k!: the Taylor series of exp.
+pub(crate) const TAYLOR: [f64; 14] = {
+    let mut c = [1.0; 14];
+    let mut k = 1;
+    while k < 14 {
+        c[k] = c[k - 1] / k as f64;
+        k += 1;
+    }
+    c
+};
+
 /// e^x within 2 ulp for |x| < 708; below that 0, above it infinite.
 ///
 /// x = k ln 2 + f with |f| <= ln 2 / 2; the Taylor series of exp to degree 13 ends below 1e-17.
 pub fn exp(x: f64) -> f64 {
     const LIMIT: f64 = 708.0;
-    const LN2_HI: f64 = 0.693_147_180_369_123_8;
-    const LN2_LO: f64 = 1.908_214_929_270_587_7e-10;
-    const C: [f64; 14] = {
-        let mut c = [1.0; 14];
-        let mut k = 1;
-        while k < 14 {
-            c[k] = c[k - 1] / k as f64;
-            k += 1;
-        }
-        c
-    };
     if LIMIT <= x.abs() || x.is_nan() {
         return if x < 0.0 { 0.0 } else { f64::INFINITY };
     }
     let k = (x * std::f64::consts::LOG2_E).round_ties_even();
     let f = (x - k * LN2_HI) - k * LN2_LO;
-    let mut p = C[13];
-    for c in C[..13].iter().rev() {
+    let mut p = TAYLOR[13];
+    for c in TAYLOR[..13].iter().rev() {
         p = p * f + c;
     }
     p * f64::from_bits(((k as i64 + 1023) as u64) << 52)
@@ -44,8 +49,6 @@ pub fn ln_1p(u: f64) -> f64 {
 
 /// ln x within 2 ulp, or 2^-53 where it is less than that, for finite x > 0; minus infinity for 0.
 pub fn ln(x: f64) -> f64 {
-    const LN2_HI: f64 = 0.693_147_180_369_123_8;
-    const LN2_LO: f64 = 1.908_214_929_270_587_7e-10;
     if x < f64::MIN_POSITIVE {
         // Subnormal numbers are as good as zero to what is asked here.
         return f64::NEG_INFINITY;

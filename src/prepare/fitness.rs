@@ -59,7 +59,7 @@ impl Fitness {
     pub fn new(samples: &Samples, tree: &Neighbours, single: bool, mixed: bool) -> Fitness {
         let thinnest = if mixed { THINNEST_MIXED } else { THINNEST };
         let bounds = samples.bounds();
-        let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
+        let farthest = bounds.farthest();
         let width = median(samples.widths.clone());
         Fitness {
             noise: noise(samples, tree),

@@ -27,20 +27,11 @@ fn count(shape: &Shape, known: &mut HashMap<usize, u64>) -> u64 {
     if let Some(count) = known.get(&key) {
         return *count;
     }
-    let found = match &shape.0.kind {
-        ShapeKind::Leaf { .. } => return 1,
-        ShapeKind::Boolean { operands, .. } => {
-            operands.iter().fold(0u64, |sum, o| sum.saturating_add(count(&o.shape, known)))
-        }
-        ShapeKind::Clip { child, by } => count(child, known).saturating_add(count(&by.shape, known)),
-        ShapeKind::Transform { child, .. }
-        | ShapeKind::Fit { child, .. }
-        | ShapeKind::With { child, .. }
-        | ShapeKind::Cut { child, .. }
-        | ShapeKind::Close { child, .. }
-        | ShapeKind::Thicken { child, .. }
-        | ShapeKind::Offset { child, .. } => count(child, known),
-    };
+    if let ShapeKind::Leaf { .. } = shape.0.kind {
+        return 1;
+    }
+    let children = shape.0.kind.children();
+    let found = children.fold(0u64, |sum, child| sum.saturating_add(count(child, known)));
     known.insert(key, found);
     found
 }

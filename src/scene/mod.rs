@@ -74,6 +74,23 @@ impl Shape {
 }
 
 impl ShapeKind {
+    /// The shapes that this node is made of; those among a primitive's arguments are not.
+    pub fn children(&self) -> impl Iterator<Item = &Shape> {
+        let (operands, one, by): (&[Operand], _, _) = match self {
+            ShapeKind::Leaf { .. } => (&[], None, None),
+            ShapeKind::Boolean { operands, .. } => (operands, None, None),
+            ShapeKind::Transform { child, .. }
+            | ShapeKind::Fit { child, .. }
+            | ShapeKind::With { child, .. }
+            | ShapeKind::Cut { child, .. }
+            | ShapeKind::Close { child, .. }
+            | ShapeKind::Thicken { child, .. }
+            | ShapeKind::Offset { child, .. } => (&[], Some(child), None),
+            ShapeKind::Clip { child, by } => (&[], Some(child), Some(&by.shape)),
+        };
+        operands.iter().map(|o| &o.shape).chain(one).chain(by)
+    }
+
     /// Moves the shapes below this node into `out`.
     fn take_children(&mut self, out: &mut Vec<Shape>) {
         let nothing = ShapeKind::Boolean { op: BooleanOp::Union, operands: Vec::new() };

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DMat3, DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 
+use super::shaft::{Shaft, push_within};
 use super::table::{Build, Primitive};
 use super::{Answer, Crossing, Scratch, Solid};
 use crate::geom::{Aabb, Interval, Ray};
@@ -36,10 +37,9 @@ fn build(call: &Call) -> Result<Arc<dyn Solid>, BuildError> {
             return Err(BuildError { param, message: format!("`{param}` is negative"), help });
         }
     }
-    match (call.number("h"), call.vec3("from"), call.vec3("to")) {
-        (Some(h), None, None) => Ok(Arc::new(Cone::new(radii, DVec3::ZERO, DVec3::new(0.0, 0.0, h)))),
-        (None, Some(from), Some(to)) => Ok(Arc::new(Cone::new(radii, from, to))),
-        _ => Err(BuildError {
+    match Shaft::ends(call) {
+        Some([from, to]) => Ok(Arc::new(Cone::new(radii, from, to))),
+        None => Err(BuildError {
             param: "",
             message: "a cone needs either a height or both its ends".into(),
             help: "write `cone(r1: 1, r2: 0, h: 2)` or `cone(r1: 1, r2: 0, from: [0, 0, 0], to: [0, 0, 2])`"
@@ -51,32 +51,21 @@ fn build(call: &Call) -> Result<Arc<dyn Solid>, BuildError> {
 /// The frustum between two discs across an axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Cone {
-    from: DVec3,
-    to: DVec3,
+    shaft: Shaft,
     radii: [f64; 2],
-    /// Rows: two unit vectors across, one along the axis.
-    across_along: DMat3,
-    height: f64,
     /// By how much the radius grows with each length along the axis.
     slope: f64,
     /// Half way up, where rays are shifted to.
     middle: DVec3,
 }
 
-const WALL: u32 = 0;
-const BOTTOM: u32 = 1;
-const TOP: u32 = 2;
-
 impl Cone {
     /// Between the centres of its ends, with the radius at each, zero or more; nothing where the ends coincide or both
     /// radii are zero.
     pub fn new(radii: [f64; 2], from: DVec3, to: DVec3) -> Cone {
-        let height = from.distance(to);
-        let axis = (to - from).try_normalize().unwrap_or(DVec3::Z);
-        let (u, v) = axis.any_orthonormal_pair();
-        let slope = if 0.0 < height { (radii[1] - radii[0]) / height } else { 0.0 };
-        let across_along = DMat3::from_cols(u, v, axis).transpose();
-        Cone { from, to, radii, across_along, height, slope, middle: 0.5 * (from + to) }
+        let shaft = Shaft::new(from, to);
+        let slope = if 0.0 < shaft.height { (radii[1] - radii[0]) / shaft.height } else { 0.0 };
+        Cone { shaft, radii, slope, middle: 0.5 * (from + to) }
     }
 
     /// The part of a line inside the infinite cone of radius w, the one nappe where w > 0: `o` and `d` across the axis,
@@ -123,50 +112,24 @@ impl Solid for Cone {
     }
 
     fn extent_under(&self, to_from: &DAffine3) -> Aabb {
-        // A disc spanned by u and v reaches the length of (u, v) along each axis.
-        let across = self.across_along.transpose();
-        let (u, v) = (to_from.matrix3 * across.x_axis, to_from.matrix3 * across.y_axis);
-        let reach = (u * u + v * v).map(f64::sqrt);
-        let disc = |p: DVec3, r: f64| {
-            let p = to_from.transform_point3(p);
-            Aabb { min: p - r * reach, max: p + r * reach }
-        };
-        disc(self.from, self.radii[0]).union(disc(self.to, self.radii[1]))
+        self.shaft.extent(self.radii, to_from)
     }
 
     /// The slab between the ends and the infinite cone, about the point nearest to the middle of the axis.
     fn crossings(&self, ray: &Ray, _: Interval, _: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
         let miss = Answer::whole_line(false);
-        if self.height <= 0.0 || self.radii[0].max(self.radii[1]) <= 0.0 {
+        let Shaft { from, across_along, height, .. } = self.shaft;
+        if height <= 0.0 || self.radii[0].max(self.radii[1]) <= 0.0 {
             return miss;
         }
         let (shift, o) = ray.nearest_to(self.middle);
         // Heights are taken from the ray's own origin: they decide flush faces, and are exact along the axes.
-        let z = self.across_along.transpose().z_axis.dot(ray.origin - self.from);
-        let (o, d) = (self.across_along * o, self.across_along * ray.dir);
-        let (mut enter, mut exit) = ((f64::NEG_INFINITY, WALL), (f64::INFINITY, WALL));
-        if d.z == 0.0 {
-            if z < 0.0 || self.height <= z {
-                return miss;
-            }
-        } else {
-            let ends = [(-z / d.z, BOTTOM), ((self.height - z) / d.z, TOP)];
-            (enter, exit) = if 0.0 < d.z { (ends[0], ends[1]) } else { (ends[1], ends[0]) };
-        }
+        let z = self.shaft.axis().dot(ray.origin - from);
+        let (o, d) = (across_along * o, across_along * ray.dir);
+        let Some(ends) = self.shaft.between(z, d.z) else { return miss };
         let w = 0.5 * (self.radii[0] + self.radii[1]) + self.slope * o.z;
-        let Some([lo, hi]) = self.nappe(o.truncate(), d.truncate(), w, self.slope * d.z) else {
-            return miss;
-        };
-        let (lo, hi) = (shift + lo, shift + hi);
-        if enter.0 < lo {
-            enter = (lo, WALL);
-        }
-        if hi < exit.0 {
-            exit = (hi, WALL);
-        }
-        if enter.0 < exit.0 {
-            out.push(Crossing::exact(enter.0, true, enter.1));
-            out.push(Crossing::exact(exit.0, false, exit.1));
+        if let Some([lo, hi]) = self.nappe(o.truncate(), d.truncate(), w, self.slope * d.z) {
+            push_within(ends, [shift + lo, shift + hi], out);
         }
         miss
     }
@@ -179,7 +142,7 @@ impl Solid for Cone {
         }
         let across = -by * (1.0 + self.slope * self.slope).sqrt();
         let radius_at = |z: f64| self.radii[0] + self.slope * z - across;
-        let [mut lo, mut hi] = [-by, self.height + by];
+        let [mut lo, mut hi] = [-by, self.shaft.height + by];
         if 0.0 < self.slope && radius_at(lo) < 0.0 {
             lo = (across - self.radii[0]) / self.slope;
         } else if self.slope < 0.0 && radius_at(hi) < 0.0 {
@@ -189,22 +152,17 @@ impl Solid for Cone {
         if hi <= lo || radii[0].max(radii[1]) <= 0.0 {
             return Ok(None);
         }
-        let axis = self.across_along.transpose().z_axis;
-        Ok(Some(Arc::new(Cone::new(radii, self.from + lo * axis, self.from + hi * axis))))
+        let (from, axis) = (self.shaft.from, self.shaft.axis());
+        Ok(Some(Arc::new(Cone::new(radii, from + lo * axis, from + hi * axis))))
     }
 
     fn normal(&self, ray: &Ray, crossing: &Crossing, _: &mut Scratch) -> DVec3 {
-        let across_along = self.across_along.transpose();
-        let axis = across_along.z_axis;
-        match crossing.part {
-            BOTTOM => -axis,
-            TOP => axis,
-            _ => {
-                let p = self.across_along * (ray.at(crossing.t) - self.middle);
-                let out = (p.x * across_along.x_axis + p.y * across_along.y_axis).normalize_or_zero();
-                // At the apex, where there is no normal, along the axis.
-                (out - self.slope * axis).try_normalize().unwrap_or(axis)
-            }
-        }
+        let wall = || {
+            let axis = self.shaft.axis();
+            let out = self.shaft.away(ray.at(crossing.t) - self.middle);
+            // At the apex, where there is no normal, along the axis.
+            (out - self.slope * axis).try_normalize().unwrap_or(axis)
+        };
+        self.shaft.end_normal(crossing.part).unwrap_or_else(wall)
     }
 }

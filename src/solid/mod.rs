@@ -19,6 +19,7 @@ pub mod points;
 pub mod quadric;
 pub mod revolve;
 pub mod rounded_box;
+pub mod shaft;
 pub mod sphere;
 pub mod superellipsoid;
 pub mod table;

@@ -4,26 +4,47 @@
 //! Who lies on the outline is decided by a shift of the point by less than anything, to the right and by less than
 //! that up: left and lower edges belong to the inside, right and upper ones do not, as with a box.
 
+use std::cmp::Ordering;
+
 use glam::DVec2;
 
+use crate::geom::halves::{Halves, Halving};
 use crate::scene::BuildError;
 
 /// Loops, their edges in the order of a hierarchy over them.
 #[derive(Clone, Debug)]
 pub struct Outline {
     edges: Vec<[DVec2; 2]>,
-    nodes: Vec<Node>,
+    nodes: Halves<Frame>,
 }
 
-/// A node: its edges lie in a box.
-#[derive(Clone, Copy, Debug)]
-struct Node {
-    min: DVec2,
-    max: DVec2,
-    /// First edge of a leaf; of an inner node the second child (the first follows the node).
-    start: u32,
-    /// How many edges; 0 for inner nodes.
-    count: u32,
+/// The low and the high corner of what holds some edges.
+type Frame = [DVec2; 2];
+
+/// Edges are halved by their middles, across the longer side of their frame.
+struct Edges;
+
+impl Halving<[DVec2; 2]> for Edges {
+    type Bound = Frame;
+
+    fn bound(&self, edges: &[[DVec2; 2]]) -> Frame {
+        edges
+            .iter()
+            .flatten()
+            .fold([DVec2::INFINITY, DVec2::NEG_INFINITY], |[lo, hi], p| [lo.min(*p), hi.max(*p)])
+    }
+
+    fn axis(&self, _: &[[DVec2; 2]], [min, max]: &Frame) -> usize {
+        let size = *max - *min;
+        usize::from(size.x < size.y)
+    }
+
+    fn order(&self, axis: usize, a: &[DVec2; 2], b: &[DVec2; 2]) -> Ordering {
+        let middle = |e: &[DVec2; 2]| e[0][axis] + e[1][axis];
+        let ends = |e: &[DVec2; 2]| [e[0].x, e[0].y, e[1].x, e[1].y];
+        let rest = || ends(a).iter().zip(ends(b)).map(|(x, y)| x.total_cmp(&y)).find(|o| o.is_ne());
+        middle(a).total_cmp(&middle(b)).then(rest().unwrap_or(Ordering::Equal))
+    }
 }
 
 /// Edges a leaf.
@@ -65,9 +86,7 @@ impl Outline {
         if edges.is_empty() {
             return Err(wrong("the outline has no points".into()));
         }
-        let mut nodes = Vec::new();
-        let count = edges.len();
-        build(&mut edges, 0, count, &mut nodes);
+        let nodes = Halves::new(&mut edges, LEAF, &Edges);
         Ok(Outline { edges, nodes })
     }
 
@@ -78,28 +97,12 @@ impl Outline {
 
     /// Corners of a box around the outline.
     pub fn corners(&self) -> [DVec2; 2] {
-        self.nodes.first().map_or([DVec2::ZERO; 2], |root| [root.min, root.max])
+        self.nodes.root().copied().unwrap_or([DVec2::ZERO; 2])
     }
 
     /// Shows every edge of the boxes that `meets` says yes to.
-    pub fn visit(&self, mut meets: impl FnMut(DVec2, DVec2) -> bool, mut show: impl FnMut(u32)) {
-        let mut stack = [0u32; 64];
-        let mut depth = usize::from(!self.nodes.is_empty());
-        while 0 < depth {
-            depth -= 1;
-            let index = stack[depth];
-            let node = &self.nodes[index as usize];
-            if !meets(node.min, node.max) {
-                continue;
-            }
-            if node.count == 0 {
-                stack[depth] = node.start;
-                stack[depth + 1] = index + 1;
-                depth += 2;
-            } else {
-                (node.start..node.start + node.count).for_each(&mut show);
-            }
-        }
+    pub fn visit(&self, mut meets: impl FnMut(DVec2, DVec2) -> bool, show: impl FnMut(u32)) {
+        self.nodes.visit(|[min, max]| meets(*min, *max), show);
     }
 
     /// Whether a point is inside: the edges that the ray from it to the right crosses, counted (Shimrat 1962, with
@@ -148,30 +151,4 @@ impl Outline {
             }
         });
     }
-}
-
-/// Nodes of `edges[start..start + count]` in depth-first order.
-fn build(edges: &mut [[DVec2; 2]], start: usize, count: usize, nodes: &mut Vec<Node>) {
-    let mine = &mut edges[start..start + count];
-    let (min, max) = mine
-        .iter()
-        .flatten()
-        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
-    let at = nodes.len();
-    nodes.push(Node { min, max, start: start as u32, count: count as u32 });
-    if count <= LEAF {
-        return;
-    }
-    let axis = usize::from((max - min).x < (max - min).y);
-    let half = count / 2;
-    let middle = |e: &[DVec2; 2]| e[0][axis] + e[1][axis];
-    mine.select_nth_unstable_by(half, |a, b| {
-        let ends = |e: &[DVec2; 2]| [e[0].x, e[0].y, e[1].x, e[1].y];
-        let rest = || ends(a).iter().zip(ends(b)).map(|(x, y)| x.total_cmp(&y)).find(|o| o.is_ne());
-        middle(a).total_cmp(&middle(b)).then(rest().unwrap_or(std::cmp::Ordering::Equal))
-    });
-    build(edges, start, half, nodes);
-    nodes[at].start = nodes.len() as u32;
-    nodes[at].count = 0;
-    build(edges, start + half, count - half, nodes);
 }

@@ -1,24 +1,10 @@
-//! Meshes and what a ray finds of them.
+//! Meshes.
 #![allow(dead_code, missing_docs)]
 
 use glam::DVec3;
-use pss::geom::{Aabb, Interval, Ray};
+use pss::geom::Aabb;
 use pss::mesh::Mesh;
 use pss::solid::mesh::TriangleMesh;
-use pss::solid::{Crossing, Scratch, Solid};
-
-pub fn crossings(solid: &dyn Solid, ray: &Ray) -> Vec<Crossing> {
-    let mut out = Vec::new();
-    let mut scratch = Scratch::default();
-    solid.crossings(ray, Interval::ALL, &mut scratch, &mut out);
-    assert_eq!(scratch.counts.parity_repairs, 0, "an odd line: {out:?} {ray:?}");
-    assert!(out.len().is_multiple_of(2), "{out:?} {ray:?}");
-    for (i, c) in out.iter().enumerate() {
-        assert!(c.t.is_finite() && c.entering == (i % 2 == 0), "{out:?} {ray:?}");
-    }
-    assert!(out.windows(2).all(|w| w[0].t < w[1].t), "{out:?} {ray:?}");
-    out
-}
 
 pub fn made(points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> TriangleMesh {
     TriangleMesh::new(Mesh { points, triangles, notes: Vec::new() })

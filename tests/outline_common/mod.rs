@@ -4,11 +4,10 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3};
-use pss::geom::{Interval, Ray};
+use pss::solid::Solid;
 use pss::solid::extrude::Extrusion;
 use pss::solid::outline::Outline;
 use pss::solid::revolve::Revolution;
-use pss::solid::{Crossing, Scratch, Solid};
 
 /// A solid and what it holds.
 pub type Shape = (Box<dyn Solid>, Box<dyn Fn(DVec3) -> bool>);
@@ -16,18 +15,6 @@ pub type Loops = Vec<Vec<[f64; 2]>>;
 
 pub fn outline(loops: &Loops) -> Outline {
     Outline::new(loops, "outline").unwrap()
-}
-
-pub fn crossings(solid: &dyn Solid, ray: &Ray) -> Vec<Crossing> {
-    let mut out = Vec::new();
-    let answer = solid.crossings(ray, Interval::ALL, &mut Scratch::default(), &mut out);
-    assert_eq!((answer.inside, answer.range), (false, Interval::ALL));
-    for (i, c) in out.iter().enumerate() {
-        assert!(c.t.is_finite() && c.entering == (i % 2 == 0), "{out:?} {ray:?}");
-    }
-    assert!(out.len().is_multiple_of(2), "{out:?} {ray:?}");
-    assert!(out.windows(2).all(|w| w[0].t < w[1].t), "{out:?} {ray:?}");
-    out
 }
 
 /// Twice the number of loops around a point, by the angles under which it sees their edges; odd is inside.

@@ -8,6 +8,7 @@ use glam::DVec3;
 use pss::cloud::ply::Cut;
 use pss::geom::Ray;
 use pss::output::Format;
+use pss::prepare::Options;
 
 /// Renders CSG scenes of scanned point clouds and analytic solids.
 #[derive(Parser, Debug)]
@@ -98,28 +99,21 @@ pub fn cut(lenient: bool) -> Cut {
 impl Command {
     /// How messages look, and how many threads work.
     pub fn common(&self) -> CloudArgs {
-        let of = |scene: &SceneArgs| CloudArgs {
-            threads: scene.threads,
-            format: scene.format,
-            lenient: scene.lenient,
-        };
+        let of =
+            |read: &ReadArgs| CloudArgs { threads: read.threads, format: read.format, lenient: read.lenient };
         match self {
-            Command::Render(args) => of(&args.scene),
-            Command::Probe(args) => of(&args.scene),
-            Command::Check(args) => {
-                CloudArgs { threads: args.threads, format: args.format, lenient: args.lenient }
-            }
+            Command::Render(args) => of(&args.scene.read),
+            Command::Probe(args) => of(&args.scene.read),
+            Command::Check(args) => of(&args.read),
             Command::Cloud(CloudCommand::Info(args)) => args.common,
             Command::Cloud(CloudCommand::Convert(args)) => args.common,
         }
     }
 }
 
-/// What every command that reads a scene takes.
+/// What every command that reads scenes takes.
 #[derive(Group, Debug)]
-pub struct SceneArgs {
-    /// The scene file; `-` for standard input
-    pub scene: PathBuf,
+pub struct ReadArgs {
     /// Set a parameter of the scene
     #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = define)]
     pub define: Vec<(String, String)>,
@@ -135,6 +129,16 @@ pub struct SceneArgs {
     /// Keep the whole points of scans that are cut short, and say so
     #[arg(long)]
     pub lenient: bool,
+}
+
+/// What every command that looks at one scene takes.
+#[derive(Group, Debug)]
+pub struct SceneArgs {
+    /// The scene file; `-` for standard input
+    pub scene: PathBuf,
+    /// How it is read.
+    #[command(flatten)]
+    pub read: ReadArgs,
     /// Which of the scene's cameras; the first if none is named
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
@@ -143,27 +147,22 @@ pub struct SceneArgs {
     pub size: Option<[u32; 2]>,
 }
 
+impl SceneArgs {
+    /// What they say about the picture.
+    pub fn options(&self) -> Options {
+        Options { size: self.size, camera: self.camera.clone(), ..Options::default() }
+    }
+}
+
 /// Arguments of `check`.
 #[derive(Group, Debug)]
 pub struct CheckArgs {
     /// Scene files; `-` for standard input
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
-    /// Set a parameter of the scenes
-    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = define)]
-    pub define: Vec<(String, String)>,
-    /// Threads; 0 for all cores
-    #[arg(short, long, value_name = "N", default_value_t = 0, value_parser = threads)]
-    pub threads: usize,
-    /// How messages look on standard error
-    #[arg(long, value_enum, default_value_t = MessageFormat::Text)]
-    pub format: MessageFormat,
-    /// Let the scenes read files below this folder too
-    #[arg(long, value_name = "DIR")]
-    pub allow_read: Vec<PathBuf>,
-    /// Keep the whole points of scans that are cut short, and say so
-    #[arg(long)]
-    pub lenient: bool,
+    /// How they are read.
+    #[command(flatten)]
+    pub read: ReadArgs,
 }
 
 /// How messages look.

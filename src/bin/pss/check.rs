@@ -4,7 +4,7 @@ use std::path::Path;
 
 use pss::prepare::Options;
 
-use crate::args::{CheckArgs, SceneArgs};
+use crate::args::CheckArgs;
 use crate::console::{Console, Failure};
 use crate::load::{self, Loaded};
 
@@ -25,18 +25,9 @@ pub fn run(args: &CheckArgs, console: &Console) -> u8 {
 
 /// Shows a scene's warnings and says how many there are.
 fn check(args: &CheckArgs, scene: &Path, console: &Console) -> Result<usize, Failure> {
-    let args = SceneArgs {
-        scene: scene.to_owned(),
-        define: args.define.clone(),
-        threads: args.threads,
-        format: args.format,
-        allow_read: args.allow_read.clone(),
-        lenient: args.lenient,
-        camera: None,
-        size: None,
-    };
     let options = Options { measure_all: true, ..Options::default() };
-    let Loaded { shot, outline, sources, warnings, .. } = load::load(&args, options, false, console)?;
+    let Loaded { shot, outline, sources, warnings, .. } =
+        load::load(scene, &args.read, options, false, console)?;
     let findings = pss::check::findings(&shot.world, &outline);
     console.show(&findings, &sources);
     Ok(warnings + findings.len())

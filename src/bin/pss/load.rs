@@ -10,7 +10,7 @@ use pss::prepare::{self, Options, Outline, ScanReport};
 use pss::shot::Shot;
 use pss::source::SourceMap;
 
-use crate::args::{SceneArgs, cut};
+use crate::args::{ReadArgs, cut};
 use crate::console::{Console, Failure};
 
 /// The longest scene, bytes: parsing takes some seventy times as much memory.
@@ -39,17 +39,23 @@ pub struct Loaded {
 
 /// Reads and prepares a scene. `options` holds what the command has to say; what all commands share is filled
 /// in here.
-pub fn load(args: &SceneArgs, options: Options, quiet: bool, console: &Console) -> Result<Loaded, Failure> {
+pub fn load(
+    scene: &Path,
+    args: &ReadArgs,
+    options: Options,
+    quiet: bool,
+    console: &Console,
+) -> Result<Loaded, Failure> {
     let start = Instant::now();
     let mut sources = SourceMap::default();
-    let stdin = is_stdin(&args.scene);
-    let text = read_scene(&args.scene)?;
-    let name = if stdin { "<stdin>".to_owned() } else { args.scene.display().to_string() };
-    let path = (!stdin).then(|| args.scene.clone());
+    let stdin = is_stdin(scene);
+    let text = read_scene(scene)?;
+    let name = if stdin { "<stdin>".to_owned() } else { scene.display().to_string() };
+    let path = (!stdin).then(|| scene.to_owned());
     let file = sources.add(name, path, text);
     let catalog = prepare::catalog();
     let read = pss::lang::read(&mut sources, file, &catalog, &args.define);
-    let (scene, warnings) = match read {
+    let (understood, warnings) = match read {
         Ok(read) => read,
         Err(errors) => return Err(Failure::new(errors, sources)),
     };
@@ -59,14 +65,12 @@ pub fn load(args: &SceneArgs, options: Options, quiet: bool, console: &Console) 
     let parsing = start.elapsed();
     let start = Instant::now();
     let options = Options {
-        size: args.size,
-        camera: args.camera.clone(),
-        scene_dir: if stdin { PathBuf::from(".") } else { folder(&args.scene) },
+        scene_dir: if stdin { PathBuf::from(".") } else { folder(scene) },
         allow_read: args.allow_read.clone(),
         cut: cut(args.lenient),
         ..options
     };
-    let prepared = match prepare::prepare(&scene, &options) {
+    let prepared = match prepare::prepare(&understood, &options) {
         Ok(prepared) => prepared,
         Err(errors) => return Err(Failure::new(errors, sources)),
     };

@@ -24,8 +24,8 @@ const BATCH: usize = 4096;
 /// Runs the command.
 pub fn run(args: &ProbeArgs, console: &Console) -> Result<(), Failure> {
     let rays = args.rays.as_deref().map(read_rays).transpose()?;
-    let loaded =
-        load::load(&args.scene, Options { measure_all: true, ..Options::default() }, false, console)?;
+    let options = Options { measure_all: true, ..args.scene.options() };
+    let loaded = load::load(&args.scene.scene, &args.scene.read, options, false, console)?;
     let rays = match (rays, args.ray, args.pixel) {
         (Some(rays), ..) => rays,
         (None, Some(ray), _) => vec![ray],

@@ -21,8 +21,8 @@ use crate::stats::{Stages, Stats};
 pub fn run(args: &RenderArgs, console: &Console) -> Result<(), Failure> {
     let start = Instant::now();
     let outputs = outputs(args)?;
-    let options = Options { samples: args.spp, seed: args.seed, crop: args.crop, ..Options::default() };
-    let mut loaded = load::load(&args.scene, options, args.quiet, console)?;
+    let options = Options { samples: args.spp, seed: args.seed, crop: args.crop, ..args.scene.options() };
+    let mut loaded = load::load(&args.scene.scene, &args.scene.read, options, args.quiet, console)?;
     if !outputs.iter().any(|path| Format::of(path) == Some(Format::Exr)) {
         // No other format holds layers.
         loaded.shot.settings.aov.clear();

@@ -67,7 +67,7 @@ impl Pyramid {
         bounds: &Aabb,
         mut show: impl FnMut(usize, usize, Interval),
     ) {
-        let size = bounds.min.abs().max(bounds.max.abs()).max_element();
+        let size = bounds.farthest();
         let slack = tolerance::noise(size);
         let mut open = vec![(self.levels.len() - 1, 0usize, 0usize)];
         while let Some((level, i, j)) = open.pop() {
