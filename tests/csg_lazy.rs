@@ -75,7 +75,7 @@ fn a_cutter_is_asked_only_where_the_base_lives() {
 fn what_lies_behind_the_first_surface_is_never_asked() {
     let mut scratch = Scratch::default();
     let (front, _) = placed(Line::new(&[2.0, 10.0]), 0);
-    let (behind, asked) = placed(Line::new(&[20.0, 30.0]), 1);
+    let (behind, asked) = placed(Line { costly: true, ..Line::new(&[20.0, 30.0]) }, 1);
     let object = Object::new(vec![front, behind], &Expr::Or(vec![Expr::Leaf(0), Expr::Leaf(1)]));
     let first = object.first(&axis(), Interval::AHEAD, &mut scratch).unwrap();
     assert_eq!((first.0.t, first.1), (2.0, true));

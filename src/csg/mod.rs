@@ -3,10 +3,12 @@
 
 mod cleanup;
 mod clip;
+mod eager;
 mod expr;
 mod hierarchy;
 mod leaf;
 mod object;
+mod open;
 mod owner;
 mod queue;
 mod reach;

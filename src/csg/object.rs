@@ -14,7 +14,7 @@ use super::sweep::Sweep;
 use super::tree::Tree;
 use super::truth::State;
 use crate::geom::{Interval, Ray};
-use crate::solid;
+use crate::solid::{self, Cost};
 
 /// What queries of objects need beside their arguments, one for each thread.
 #[derive(Debug, Default)]
@@ -39,8 +39,8 @@ pub(super) struct Core {
     pub tree: Tree,
     pub hierarchy: Hierarchy,
     pub outside: State,
-    /// For each leaf whether it is asked after the others.
-    pub costly: Vec<bool>,
+    /// For each leaf what asking it costs.
+    pub costs: Vec<Cost>,
     /// For each leaf [`Leaf::scale`].
     pub scales: Vec<f64>,
     pub bound: Bound,
@@ -55,14 +55,14 @@ impl Core {
             shift: most(|l| l.solid.shift_bound() * l.place.stretch),
             grain: most(|l| l.solid.grain() * l.place.stretch),
         };
-        let costly = leaves.iter().map(|l| l.solid.is_costly()).collect();
+        let costs = leaves.iter().map(|l| l.solid.cost()).collect();
         let scales = leaves.iter().map(Leaf::scale).collect();
         let condition = worst_condition(leaves.iter().map(|l| l.place.condition));
         let tree = Tree::new(leaves, expr);
         let hierarchy = Hierarchy::new(&reaches(&tree), condition);
         let outside = State::outside(&tree);
         let id = NEXT.fetch_add(1, Ordering::Relaxed);
-        Core { id, tree, hierarchy, outside, costly, scales, bound }
+        Core { id, tree, hierarchy, outside, costs, scales, bound }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Room for sweeps, lent by a thread: what a ray meets, what leaves have answered, what is inside.
 
 use super::hierarchy::Walk;
+use super::open::Open;
 use super::queue::Queue;
 use super::truth::State;
 use crate::geom::{Interval, Ray};
@@ -46,8 +47,8 @@ pub(super) struct Room {
     /// And about a place before.
     pub before: State,
     pub met: Vec<Met>,
-    /// Of those, whose state is open now.
-    pub open: Vec<u32>,
+    /// Leaves whose state is open.
+    pub open: Open,
     pub walk: Walk,
     pub queue: Queue,
     /// Crossings that leaves have answered in the sweep.

@@ -39,10 +39,12 @@ pub(super) struct Sweep<'a> {
     /// Everything up to here is settled.
     pub at: f64,
     inside: bool,
+    /// Whether all crossings are in the queue.
+    eager: bool,
 }
 
 impl<'a> Sweep<'a> {
-    /// Meets the boxes that have no end; the others are met on the way.
+    /// Meets and asks everything, where that is little; else meets the boxes that have no end, and the others on the way.
     pub fn new(
         core: &'a Core,
         ray: &'a Ray,
@@ -51,9 +53,17 @@ impl<'a> Sweep<'a> {
         scratch: &'a mut solid::Scratch,
     ) -> Sweep<'a> {
         room.enter(core.id, &core.outside);
-        let Room { met, walk, queue, .. } = room;
-        walk.begin(&core.hierarchy, ray, range, |leaf, inside| show(met, queue, range, leaf, inside));
-        Sweep { core, ray, range, room, scratch, at: range.lo, inside: false }
+        let Room { met, walk, .. } = room;
+        walk.begin(&core.hierarchy, ray, range, |leaf, inside| met.push(Met::new(leaf, inside)));
+        let mut sweep = Sweep { core, ray, range, room, scratch, at: range.lo, inside: false, eager: false };
+        sweep.eager = sweep.ask_all();
+        if !sweep.eager {
+            let Room { met, queue, .. } = &mut *sweep.room;
+            for (i, m) in (0..).zip(met) {
+                queue.push(opening(m, i, range));
+            }
+        }
+        sweep
     }
 
     /// Lets the hierarchy show every leaf whose box begins up to `t`.
@@ -128,14 +138,16 @@ impl<'a> Sweep<'a> {
             let leaf = m.leaf as usize;
             match what {
                 What::Open => {
-                    self.room.open.push(met);
+                    self.room.open.push(self.core.costs[leaf], m.leaf, met);
                     self.room.state.set(tree, leaf, Truth::Open);
                 }
                 What::Cross => {
                     let crossing = self.room.pool[m.next as usize];
                     m.next += 1;
                     self.room.state.set(tree, leaf, Truth::known(crossing.entering));
-                    self.schedule(met as usize);
+                    if !self.eager {
+                        self.schedule(met as usize);
+                    }
                     crossings += 1;
                     let key = |met: u32| self.key(met);
                     if best.is_none_or(|(other, _)| key(met) < key(other)) {
@@ -172,11 +184,7 @@ impl<'a> Sweep<'a> {
     fn resolve(&mut self) -> Option<(u32, Crossing)> {
         let mut last = None;
         while self.room.state.root() == Truth::Open {
-            let (tree, room) = (&self.core.tree, &*self.room);
-            let leaf = |at: usize| room.met[room.open[at] as usize].leaf as usize;
-            let useful = (0..room.open.len()).filter(|at| room.state.matters(tree, leaf(*at)));
-            let Some(at) = useful.min_by_key(|at| (self.core.costly[leaf(*at)], leaf(*at))) else { break };
-            let met = self.room.open.swap_remove(at);
+            let Some(met) = self.room.open.pop(&self.core.tree, &mut self.room.state) else { break };
             last = self.ask(met as usize).map(|c| (met, c)).or(last);
         }
         last
@@ -276,13 +284,20 @@ impl<'a> Sweep<'a> {
 /// A leaf comes in sight.
 #[inline]
 fn show(met: &mut Vec<Met>, queue: &mut super::queue::Queue, range: Interval, leaf: u32, inside: Interval) {
-    queue.push(Event { t: inside.lo.max(range.lo), met: met.len() as u32, what: What::Open });
-    met.push(Met::new(leaf, inside));
+    let new = Met::new(leaf, inside);
+    queue.push(opening(&new, met.len() as u32, range));
+    met.push(new);
+}
+
+/// The ray enters the box of a leaf met.
+fn opening(m: &Met, met: u32, range: Interval) -> Event {
+    Event { t: m.range.lo.max(range.lo), met, what: What::Open }
 }
 
 impl Drop for Sweep<'_> {
     fn drop(&mut self) {
         self.room.state.reset(&self.core.tree);
+        self.room.state.woken.clear();
         let skipped = self.room.met.len() as u64 - u64::from(self.room.asked);
         self.scratch.counts.leaves_skipped += skipped;
     }

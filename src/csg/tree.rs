@@ -27,6 +27,28 @@ pub(super) struct Up {
     pub negated: bool,
 }
 
+impl Up {
+    /// There is no node above.
+    pub const NONE: Up = Up { node: u32::MAX, negated: false };
+    /// There are several.
+    const SEVERAL: Up = Up { node: u32::MAX - 1, negated: false };
+
+    /// The only one of some links, if it is.
+    fn only(ups: &[Up]) -> Up {
+        match ups {
+            [] => Up::NONE,
+            [one] => *one,
+            _ => Up::SEVERAL,
+        }
+    }
+
+    /// Whether it leads to a node.
+    #[inline]
+    pub fn is_one(self) -> bool {
+        self.node < Up::SEVERAL.node
+    }
+}
+
 /// A node: its children are known by how many they are.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
@@ -69,6 +91,9 @@ pub struct Tree {
     pub(super) node_ups: Lists<Up>,
     /// For each leaf the nodes it counts in.
     pub(super) leaf_ups: Lists<Up>,
+    /// For each node and each leaf the one node it counts in, where it is one.
+    pub(super) node_up: Vec<Up>,
+    pub(super) leaf_up: Vec<Up>,
     /// For each leaf, whether it is negated on its way to the root; `None` where an exclusion or uses of both kinds
     /// leave that open.
     pub(super) negated: Vec<Option<bool>>,
@@ -106,9 +131,13 @@ impl Tree {
             node_ups: Lists::new(nodes.len(), node_ups),
             leaf_ups: Lists::new(leaves.len(), leaf_ups),
             negated: Vec::new(),
+            node_up: Vec::new(),
+            leaf_up: Vec::new(),
             nodes,
             leaves: leaves.into(),
         };
+        tree.node_up = (0..tree.nodes.len()).map(|i| Up::only(tree.node_ups.of(i))).collect();
+        tree.leaf_up = (0..tree.leaves.len()).map(|i| Up::only(tree.leaf_ups.of(i))).collect();
         tree.negated = tree.senses();
         tree
     }

@@ -41,6 +41,22 @@ struct Count {
     queued: bool,
 }
 
+impl Count {
+    /// A child changes.
+    fn recount(&mut self, up: Up, was: Truth, is: Truth) {
+        match was.negated(up.negated) {
+            Truth::Yes => self.yes -= 1,
+            Truth::Open => self.open -= 1,
+            Truth::No => {}
+        }
+        match is.negated(up.negated) {
+            Truth::Yes => self.yes += 1,
+            Truth::Open => self.open += 1,
+            Truth::No => {}
+        }
+    }
+}
+
 /// The state of every leaf and node.
 #[derive(Clone, Debug, Default)]
 pub(super) struct State {
@@ -50,6 +66,10 @@ pub(super) struct State {
     touched: Vec<u32>,
     /// Nodes whose children changed, the lowest last.
     waiting: Vec<u32>,
+    /// Nodes that somebody waits for to be open again ([`State::watch`]).
+    watched: Vec<bool>,
+    /// Of those, which were open again since.
+    pub woken: Vec<u32>,
 }
 
 impl State {
@@ -58,6 +78,7 @@ impl State {
         let mut state = State {
             leaves: vec![Truth::No; tree.leaves().len()],
             counts: vec![Count::default(); tree.nodes.len()],
+            watched: vec![false; tree.nodes.len()],
             ..State::default()
         };
         for leaf in 0..tree.leaves().len() {
@@ -142,6 +163,24 @@ impl State {
         self.climbs(tree, tree.leaf_ups.of(leaf), |node| self.counts[node].value == Truth::Open)
     }
 
+    /// Of the nodes on an open leaf's way up the first that is known, where there is only one way: knowing the leaf cannot
+    /// tell the root until that node is open again.
+    pub fn blocker(&self, tree: &Tree, leaf: usize) -> Option<u32> {
+        let mut up = tree.leaf_up[leaf];
+        while up.is_one() {
+            if self.counts[up.node as usize].value != Truth::Open {
+                return Some(up.node);
+            }
+            up = tree.node_up[up.node as usize];
+        }
+        None
+    }
+
+    /// Puts a node into `woken` when it is open again.
+    pub fn watch(&mut self, node: u32) {
+        self.watched[node as usize] = true;
+    }
+
     /// Whether a leaf and all nodes above one of its uses are inside; nothing may be open.
     pub fn fills(&self, tree: &Tree, leaf: usize) -> bool {
         self.leaves[leaf] == Truth::Yes
@@ -167,37 +206,56 @@ impl State {
         if before == truth {
             return;
         }
-        self.count(tree.leaf_ups.of(leaf), before, truth);
-        // Children before those above them, so that a node is looked at once, however many ways lead to it.
+        // Most things have one way up.
+        let (mut was, mut is, mut up, mut below) = (before, truth, tree.leaf_up[leaf], None);
+        while up.is_one() {
+            let node = up.node as usize;
+            self.counts[node].recount(up, was, is);
+            (was, is) = self.renew(tree, node);
+            if was == is {
+                return;
+            }
+            (up, below) = (tree.node_up[node], Some(node));
+        }
+        if up != Up::NONE {
+            let ups = below.map_or_else(|| tree.leaf_ups.of(leaf), |node| tree.node_ups.of(node));
+            self.put_all(tree, ups, was, is);
+        }
+    }
+
+    /// The same where ways part: children before those above them, so that a node is looked at once, however many ways
+    /// lead to it.
+    fn put_all(&mut self, tree: &Tree, ups: &[Up], was: Truth, is: Truth) {
+        self.count(ups, was, is);
         while let Some(node) = self.waiting.pop() {
-            let i = node as usize;
-            let is = self.evaluated(tree, i);
-            let was = std::mem::replace(&mut self.counts[i].value, is);
-            self.counts[i].queued = false;
+            let node = node as usize;
+            self.counts[node].queued = false;
+            let (was, is) = self.renew(tree, node);
             if is != was {
-                self.count(tree.node_ups.of(i), was, is);
+                self.count(tree.node_ups.of(node), was, is);
             }
         }
     }
 
     /// Counts a child's change in the nodes above it.
-    fn count(&mut self, ups: &[Up], before: Truth, after: Truth) {
+    fn count(&mut self, ups: &[Up], was: Truth, is: Truth) {
         for up in ups {
             let count = &mut self.counts[up.node as usize];
-            match before.negated(up.negated) {
-                Truth::Yes => count.yes -= 1,
-                Truth::Open => count.open -= 1,
-                Truth::No => {}
-            }
-            match after.negated(up.negated) {
-                Truth::Yes => count.yes += 1,
-                Truth::Open => count.open += 1,
-                Truth::No => {}
-            }
+            count.recount(*up, was, is);
             if !std::mem::replace(&mut count.queued, true) {
                 let at = self.waiting.partition_point(|n| up.node < *n);
                 self.waiting.insert(at, up.node);
             }
         }
+    }
+
+    /// Looks at a node again; its value before and now.
+    fn renew(&mut self, tree: &Tree, node: usize) -> (Truth, Truth) {
+        let is = self.evaluated(tree, node);
+        let was = std::mem::replace(&mut self.counts[node].value, is);
+        if is == Truth::Open && was != is && std::mem::take(&mut self.watched[node]) {
+            self.woken.push(node as u32);
+        }
+        (was, is)
     }
 }

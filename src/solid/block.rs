@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::rounded_box::RoundedBox;
 use super::table::{Build, Primitive};
-use super::{Answer, Crossing, Scratch, Solid};
+use super::{Answer, Cost, Crossing, Scratch, Solid};
 use crate::geom::{Aabb, Interval, Ray};
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param, Value};
 
@@ -129,6 +129,10 @@ impl Solid for Block {
         } else {
             return Err("what lies near an unbounded box has rounded edges");
         }))
+    }
+
+    fn cost(&self) -> Cost {
+        Cost::Closed
     }
 
     fn normal(&self, _: &Ray, crossing: &Crossing, _: &mut Scratch) -> DVec3 {

@@ -6,7 +6,7 @@ use glam::{DAffine3, DVec2, DVec3};
 
 use super::shaft::{Shaft, push_within};
 use super::table::{Build, Primitive};
-use super::{Answer, Crossing, Scratch, Solid};
+use super::{Answer, Cost, Crossing, Scratch, Solid};
 use crate::geom::{Aabb, Interval, Ray};
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};
 
@@ -154,6 +154,10 @@ impl Solid for Cone {
         }
         let (from, axis) = (self.shaft.from, self.shaft.axis());
         Ok(Some(Arc::new(Cone::new(radii, from + lo * axis, from + hi * axis))))
+    }
+
+    fn cost(&self) -> Cost {
+        Cost::Closed
     }
 
     fn normal(&self, ray: &Ray, crossing: &Crossing, _: &mut Scratch) -> DVec3 {

@@ -6,7 +6,7 @@ use glam::{DAffine3, DVec2, DVec3};
 
 use super::shaft::{Shaft, push_within};
 use super::table::{Build, Primitive};
-use super::{Answer, Crossing, Scratch, Solid};
+use super::{Answer, Cost, Crossing, Scratch, Solid};
 use crate::geom::{Aabb, Interval, Ray};
 use crate::num::roots;
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};
@@ -100,6 +100,10 @@ impl Solid for Cylinder {
         let left = 0.0 < self.radius + by && 0.0 < height + 2.0 * by;
         let (from, to) = (from - by * self.shaft.axis(), to + by * self.shaft.axis());
         Ok(left.then(|| Arc::new(Cylinder::new(self.radius + by, from, to)) as Arc<dyn Solid>))
+    }
+
+    fn cost(&self) -> Cost {
+        Cost::Closed
     }
 
     fn normal(&self, ray: &Ray, crossing: &Crossing, _: &mut Scratch) -> DVec3 {

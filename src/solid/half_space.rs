@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::table::{Build, Primitive};
-use super::{Answer, Crossing, Scratch, Solid};
+use super::{Answer, Cost, Crossing, Scratch, Solid};
 use crate::geom::{Aabb, Interval, Ray};
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param, Value};
 
@@ -71,6 +71,10 @@ impl Solid for HalfSpace {
 
     fn moved(&self, by: f64) -> Result<Option<Arc<dyn Solid>>, &'static str> {
         Ok(Some(Arc::new(HalfSpace { normal: self.normal, offset: self.offset + by })))
+    }
+
+    fn cost(&self) -> Cost {
+        Cost::Closed
     }
 
     fn normal(&self, _: &Ray, _: &Crossing, _: &mut Scratch) -> DVec3 {

@@ -44,6 +44,18 @@ pub enum Body {
     Sheet,
 }
 
+/// What asking a solid costs.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Cost {
+    /// Some tens of nanoseconds, less than finding out whether the answer is needed: one closed form, for the whole line
+    /// at once.
+    Closed,
+    /// Several closed forms, roots of polynomials, a hierarchy.
+    Search,
+    /// Much more: scans, formulas.
+    Heavy,
+}
+
 /// A solid or a sheet in its own frame.
 ///
 /// Methods take `&self`; what a query needs beside the answer is lent as [`Scratch`]. Rays are finite and
@@ -108,9 +120,9 @@ pub trait Solid: Send + Sync + Debug {
         "a Sheet: an open surface".into()
     }
 
-    /// Whether asking costs much more than a closed form: such solids are asked last.
-    fn is_costly(&self) -> bool {
-        false
+    /// What asking costs: the cheap are asked before the dear.
+    fn cost(&self) -> Cost {
+        Cost::Search
     }
 }
 

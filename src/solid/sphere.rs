@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 
 use super::table::{Build, Primitive};
-use super::{Answer, Crossing, Scratch, Solid};
+use super::{Answer, Cost, Crossing, Scratch, Solid};
 use crate::geom::{Aabb, Interval, Ray};
 use crate::num::roots;
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param, Value};
@@ -85,6 +85,10 @@ impl Solid for Sphere {
         let radii = self.radii + by;
         let left = 0.0 < self.radii.x && 0.0 < radii.x;
         Ok(left.then(|| Arc::new(Sphere { center: self.center, radii }) as Arc<dyn Solid>))
+    }
+
+    fn cost(&self) -> Cost {
+        Cost::Closed
     }
 
     fn normal(&self, ray: &Ray, crossing: &Crossing, _: &mut Scratch) -> DVec3 {

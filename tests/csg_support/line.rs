@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::{DVec3, dvec3};
 use pss::csg::Leaf;
 use pss::geom::{Aabb, Interval, Placement, Ray};
-use pss::solid::{Answer, Crossing, Scratch, Solid};
+use pss::solid::{Answer, Cost, Crossing, Scratch, Solid};
 
 use super::draws::Draws;
 
@@ -83,8 +83,12 @@ impl Solid for Line {
         self.shift
     }
 
-    fn is_costly(&self) -> bool {
-        self.costly
+    fn cost(&self) -> Cost {
+        match (self.costly, self.piece) {
+            (true, _) => Cost::Heavy,
+            (false, Some(_)) => Cost::Search,
+            (false, None) => Cost::Closed,
+        }
     }
 }
 

@@ -14,7 +14,7 @@ use glam::{DAffine3, DVec3};
 
 use super::block::Block;
 use super::table::{Build, Primitive};
-use super::{Answer, Crossing, Scratch, Solid};
+use super::{Answer, Cost, Crossing, Scratch, Solid};
 use crate::geom::{Aabb, Interval, Ray, tolerance};
 use crate::scene::{BuildError, Call, Decl, Formula, Group, Kind, Param, Value};
 
@@ -130,8 +130,8 @@ impl Solid for Implicit {
         if normal.dot(against) < 0.0 { -normal } else { normal }
     }
 
-    fn is_costly(&self) -> bool {
-        true
+    fn cost(&self) -> Cost {
+        Cost::Heavy
     }
 }
 

@@ -33,7 +33,7 @@ use crate::cloud::winding::Winding;
 use crate::cloud::{AREA_NEIGHBOURS, AREA_REACH, areas};
 use crate::geom::{Aabb, Interval, Ray, tolerance};
 use crate::mls::{Compact, Form, Gaussian};
-use crate::solid::{Answer, Body, Crossing, Scratch, Solid};
+use crate::solid::{Answer, Body, Cost, Crossing, Scratch, Solid};
 
 /// Which weight.
 #[derive(Clone, Copy, Debug)]
@@ -216,7 +216,7 @@ impl Solid for PointSet {
         self.grain
     }
 
-    fn is_costly(&self) -> bool {
-        true
+    fn cost(&self) -> Cost {
+        Cost::Heavy
     }
 }

@@ -23,7 +23,7 @@ use super::probe::Room;
 use super::{PointSet, next_id};
 use crate::cloud::neighbours::{Near, Neighbours};
 use crate::geom::{Aabb, Interval, Ray};
-use crate::solid::{Answer, Counts, Crossing, Scratch, Solid};
+use crate::solid::{Answer, Cost, Counts, Crossing, Scratch, Solid};
 
 /// Numbers of the parts of the boundary.
 mod part {
@@ -363,7 +363,7 @@ impl Solid for Thick {
         self.surface.tolerance()
     }
 
-    fn is_costly(&self) -> bool {
-        true
+    fn cost(&self) -> Cost {
+        Cost::Heavy
     }
 }
