@@ -107,7 +107,7 @@ pub(super) fn ask(
         let mut begun = false;
         loop {
             found.clear();
-            let answer = leaf.solid.crossings(&local, Interval::new(lo, met.hi), scratch, &mut found);
+            let answer = leaf.crossings(&local, Interval::new(lo, met.hi), scratch, &mut found);
             if !begun {
                 let before = found.iter().rfind(|c| c.t <= lo);
                 inside[i] = before.map_or(answer.inside, |c| c.entering);

@@ -37,7 +37,7 @@ impl Clipped {
                 let (mut lo, mut all) = (range.lo, Vec::new());
                 while lo <= range.hi {
                     let rest = Interval::new(lo, range.hi);
-                    let answer = leaf.solid.crossings(&local, rest, &mut scratch.solid, &mut all);
+                    let answer = leaf.crossings(&local, rest, &mut scratch.solid, &mut all);
                     if answer.range.hi <= lo {
                         break;
                     }

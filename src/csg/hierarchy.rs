@@ -151,8 +151,9 @@ impl Probe {
         // Each end carries four roundings: of the plane's offset, the inverse, the product and the box's own corner.
         const PAD: f64 = 8.0 * f64::EPSILON;
         for side in 0..2 {
-            lo[side] -= PAD * lo[side].abs();
-            hi[side] += PAD * hi[side].abs();
+            // An infinite end of a box that is missed has no ulp: `min` and `max` keep it.
+            lo[side] = lo[side].min(lo[side] - PAD * lo[side].abs());
+            hi[side] = hi[side].max(hi[side] + PAD * hi[side].abs());
         }
         (lo, hi)
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::geom::{Aabb, Interval, Placement, Ray, tolerance};
-use crate::solid::Solid;
+use crate::solid::{Answer, Crossing, Scratch, Solid};
 
 /// A solid, placed, as an operand.
 #[derive(Clone, Debug)]
@@ -53,6 +53,32 @@ impl Leaf {
     pub fn met(&self, ray: &Ray) -> Interval {
         let far = tolerance::cleanup(ray.origin.length()) * self.place.condition;
         self.grown().inflated(far).clip(ray)
+    }
+
+    /// Appends crossings of a ray given in the leaf's frame ([`Solid::crossings`]), and counts. An answer that is none says
+    /// that the ray passes by.
+    pub fn crossings(
+        &self,
+        local: &Ray,
+        range: Interval,
+        scratch: &mut Scratch,
+        out: &mut Vec<Crossing>,
+    ) -> Answer {
+        scratch.counts.leaf_queries += 1;
+        scratch.lean = self.place.lean;
+        let first = out.len();
+        let answer = self.solid.crossings(local, range, scratch, out);
+        if answer.is_sound(&out[first..], self.solid.body()) {
+            return answer;
+        }
+        scratch.counts.bad_leaves += 1;
+        out.truncate(first);
+        Answer::whole_line(false)
+    }
+
+    /// Whether it shows on faces of leaves without a material that it fills.
+    pub(super) fn can_fill(&self) -> bool {
+        self.material.is_some() && !self.cutter
     }
 
     /// Who owns a face that several leaves share: the smallest key.

@@ -3,8 +3,8 @@
 
 mod cleanup;
 mod clip;
-mod eager;
 mod expr;
+mod few;
 mod hierarchy;
 mod leaf;
 mod object;

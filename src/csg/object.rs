@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::cleanup::{Bound, Cleaner};
 use super::expr::Expr;
+use super::few::{Found, Look};
 use super::hierarchy::{Hierarchy, worst_condition};
 use super::leaf::Leaf;
 use super::reach::reaches;
@@ -89,12 +90,18 @@ impl Object {
 
     /// The first boundary in the range, and whether the ray goes in there.
     pub fn first(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> Option<(Boundary, bool)> {
+        if let Some(Found::Answer(found)) = Look::new(&self.core, ray, range, scratch).map(Look::first) {
+            return found;
+        }
         self.cleaner(ray, range, scratch).first()
     }
 
     /// Whether any part of the range is inside, for a ray that leaves a surface where the range begins: what a leaf does
     /// not resolve there ([`crate::solid::Solid::grain`]) does not count.
     pub fn any(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> bool {
+        if let Some(Found::Answer(found)) = Look::new(&self.core, ray, range, scratch).map(Look::any) {
+            return found;
+        }
         self.cleaner(ray, range, scratch).any()
     }
 

@@ -90,10 +90,7 @@ fn filler(sweep: &mut Sweep<'_>, change: &Change, window: f64) -> Option<u32> {
     let leaves = core.tree.leaves();
     let inside = change.t + if change.entering { 2.0 * window } else { -2.0 * window };
     sweep.meet(inside);
-    let can = |leaf: u32| {
-        let leaf = &leaves[leaf as usize];
-        leaf.material.is_some() && !leaf.cutter
-    };
+    let can = |leaf: u32| leaves[leaf as usize].can_fill();
     if !sweep.room.met.iter().any(|m| can(m.leaf)) {
         return None;
     }

@@ -1,5 +1,8 @@
 //! What happens along a ray, in order.
 
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
 /// What happens to a leaf at some t.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum What {
@@ -10,7 +13,7 @@ pub(super) enum What {
 }
 
 /// An event.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Event {
     pub t: f64,
     /// Of the leaves met, which.
@@ -18,46 +21,53 @@ pub(super) struct Event {
     pub what: What,
 }
 
-/// Events by ascending t. New ones mostly come near the end, where they are put in place one by one; the order within one
-/// t is that of their making, and changes nothing.
+impl PartialEq for Event {
+    fn eq(&self, other: &Event) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Event {}
+
+impl Ord for Event {
+    /// The earlier is the greater: a heap gives its greatest first. The order within one t changes nothing.
+    fn cmp(&self, other: &Event) -> Ordering {
+        other.t.total_cmp(&self.t)
+    }
+}
+
+impl PartialOrd for Event {
+    fn partial_cmp(&self, other: &Event) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// Events by ascending t.
 #[derive(Debug, Default)]
 pub(super) struct Queue {
-    events: Vec<Event>,
-    head: usize,
+    events: BinaryHeap<Event>,
 }
 
 impl Queue {
     pub fn clear(&mut self) {
         self.events.clear();
-        self.head = 0;
     }
 
     /// The t of the next event; infinite where there is none.
     #[inline]
     pub fn next_t(&self) -> f64 {
-        self.events.get(self.head).map_or(f64::INFINITY, |e| e.t)
+        self.events.peek().map_or(f64::INFINITY, |e| e.t)
     }
 
     /// Takes the next event if it is at this t.
     #[inline]
     pub fn pop_at(&mut self, t: f64) -> Option<Event> {
-        let event = self.events.get(self.head).copied().filter(|e| e.t == t)?;
-        self.head += 1;
-        Some(event)
+        if self.next_t() == t { self.events.pop() } else { None }
     }
 
     #[inline]
     pub fn push(&mut self, event: Event) {
-        let mut at = self.events.len();
-        while self.head < at && event.t < self.events[at - 1].t {
-            at -= 1;
-        }
-        self.events.insert(at, event);
-        // What has been taken is let go of now and then.
-        if 64 < self.head && self.events.len() < 2 * self.head {
-            self.events.drain(..self.head);
-            self.head = 0;
-        }
+        self.events.push(event);
     }
 }
 

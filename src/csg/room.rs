@@ -1,5 +1,6 @@
 //! Room for sweeps, lent by a thread: what a ray meets, what leaves have answered, what is inside.
 
+use super::few::Few;
 use super::hierarchy::Walk;
 use super::open::Open;
 use super::queue::Queue;
@@ -55,6 +56,8 @@ pub(super) struct Room {
     pub pool: Vec<Crossing>,
     /// Of those met, how many were asked.
     pub asked: u32,
+    /// For rays that meet little.
+    pub few: Few,
     /// The last answer outside the sweep.
     pub fresh: Vec<Crossing>,
 }

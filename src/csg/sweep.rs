@@ -39,12 +39,10 @@ pub(super) struct Sweep<'a> {
     /// Everything up to here is settled.
     pub at: f64,
     inside: bool,
-    /// Whether all crossings are in the queue.
-    eager: bool,
 }
 
 impl<'a> Sweep<'a> {
-    /// Meets and asks everything, where that is little; else meets the boxes that have no end, and the others on the way.
+    /// Meets the boxes that have no end; the others are met on the way.
     pub fn new(
         core: &'a Core,
         ray: &'a Ray,
@@ -53,17 +51,9 @@ impl<'a> Sweep<'a> {
         scratch: &'a mut solid::Scratch,
     ) -> Sweep<'a> {
         room.enter(core.id, &core.outside);
-        let Room { met, walk, .. } = room;
-        walk.begin(&core.hierarchy, ray, range, |leaf, inside| met.push(Met::new(leaf, inside)));
-        let mut sweep = Sweep { core, ray, range, room, scratch, at: range.lo, inside: false, eager: false };
-        sweep.eager = sweep.ask_all();
-        if !sweep.eager {
-            let Room { met, queue, .. } = &mut *sweep.room;
-            for (i, m) in (0..).zip(met) {
-                queue.push(opening(m, i, range));
-            }
-        }
-        sweep
+        let Room { met, walk, queue, .. } = room;
+        walk.begin(&core.hierarchy, ray, range, |leaf, inside| show(met, queue, range, leaf, inside));
+        Sweep { core, ray, range, room, scratch, at: range.lo, inside: false }
     }
 
     /// Lets the hierarchy show every leaf whose box begins up to `t`.
@@ -145,9 +135,7 @@ impl<'a> Sweep<'a> {
                     let crossing = self.room.pool[m.next as usize];
                     m.next += 1;
                     self.room.state.set(tree, leaf, Truth::known(crossing.entering));
-                    if !self.eager {
-                        self.schedule(met as usize);
-                    }
+                    self.schedule(met as usize);
                     crossings += 1;
                     let key = |met: u32| self.key(met);
                     if best.is_none_or(|(other, _)| key(met) < key(other)) {
@@ -219,11 +207,10 @@ impl<'a> Sweep<'a> {
 
     /// A leaf's crossings in a range, into `room.fresh`.
     pub fn query(&mut self, met: usize, range: Interval) -> Answer {
-        self.scratch.counts.leaf_queries += 1;
         let local = self.local(met);
         let leaf = &self.core.tree.leaves()[self.room.met[met].leaf as usize];
         self.room.fresh.clear();
-        leaf.solid.crossings(&local, range, self.scratch, &mut self.room.fresh)
+        leaf.crossings(&local, range, self.scratch, &mut self.room.fresh)
     }
 
     /// The ray in the frame of a leaf.
@@ -284,14 +271,8 @@ impl<'a> Sweep<'a> {
 /// A leaf comes in sight.
 #[inline]
 fn show(met: &mut Vec<Met>, queue: &mut super::queue::Queue, range: Interval, leaf: u32, inside: Interval) {
-    let new = Met::new(leaf, inside);
-    queue.push(opening(&new, met.len() as u32, range));
-    met.push(new);
-}
-
-/// The ray enters the box of a leaf met.
-fn opening(m: &Met, met: u32, range: Interval) -> Event {
-    Event { t: m.range.lo.max(range.lo), met, what: What::Open }
+    queue.push(Event { t: inside.lo.max(range.lo), met: met.len() as u32, what: What::Open });
+    met.push(Met::new(leaf, inside));
 }
 
 impl Drop for Sweep<'_> {

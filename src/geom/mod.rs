@@ -3,11 +3,13 @@
 mod aabb;
 pub mod halves;
 mod interval;
+pub mod lean;
 mod placement;
 mod ray;
 pub mod tolerance;
 
 pub use aabb::Aabb;
 pub use interval::Interval;
+pub use lean::Lean;
 pub use placement::Placement;
 pub use ray::Ray;

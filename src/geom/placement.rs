@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::Ray;
+use super::{Lean, Ray};
 
 /// An invertible affine map between a local frame and the world.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -18,6 +18,8 @@ pub struct Placement {
     pub stretch: f64,
     /// By how much rounding errors can grow on the way there and back: 1 for a rotation and uniform scaling.
     pub condition: f64,
+    /// How rays lean there.
+    pub lean: Lean,
 }
 
 impl Placement {
@@ -28,6 +30,7 @@ impl Placement {
         normals: DMat3::IDENTITY,
         stretch: 1.0,
         condition: 1.0,
+        lean: Lean::of_world(),
     };
 
     /// A placement; `None` where the map has no finite inverse or its condition exceeds 1e12, past which
@@ -54,6 +57,7 @@ impl Placement {
             normals: local_from_world.matrix3.transpose(),
             stretch,
             condition: condition.max(1.0),
+            lean: Lean::local(&local_from_world.matrix3),
         })
     }
 

@@ -123,9 +123,8 @@ impl World {
         let (mut lo, mut last) = (range.lo, None);
         while lo <= range.hi {
             let mut found = Vec::new();
-            scratch.solid.counts.leaf_queries += 1;
             let rest = Interval::new(lo, range.hi);
-            let answer = leaf.solid.crossings(&local, rest, &mut scratch.solid, &mut found);
+            let answer = leaf.crossings(&local, rest, &mut scratch.solid, &mut found);
             for crossing in found.into_iter().filter(|c| lo < c.t && c.t <= range.hi) {
                 let normal = leaf.solid.normal(&local, &crossing, &mut scratch.solid);
                 let normal = leaf.place.normal_to_world(normal);

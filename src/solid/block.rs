@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::rounded_box::RoundedBox;
 use super::table::{Build, Primitive};
 use super::{Answer, Cost, Crossing, Scratch, Solid};
+use crate::geom::lean::is_between;
 use crate::geom::{Aabb, Interval, Ray};
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param, Value};
 
@@ -77,7 +78,7 @@ fn rounded(bounds: Aabb, call: &Call) -> Result<Arc<dyn Solid>, BuildError> {
     })
 }
 
-/// The points of a box, perhaps unbounded. A ray that runs in a face is inside iff the face is the low one.
+/// The points of a box, perhaps unbounded. A ray that runs in a face is inside where it leans to.
 #[derive(Clone, Copy, Debug)]
 pub struct Block(pub Aabb);
 
@@ -86,13 +87,13 @@ impl Solid for Block {
         self.0
     }
 
-    fn crossings(&self, ray: &Ray, _: Interval, _: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
+    fn crossings(&self, ray: &Ray, _: Interval, scratch: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
         let (mut enter, mut exit) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
         for axis in 0..3 {
             let (o, d) = (ray.origin[axis], ray.dir[axis]);
             let (lo, hi) = (self.0.min[axis], self.0.max[axis]);
             if d == 0.0 {
-                if o < lo || hi <= o {
+                if !is_between(o, lo, hi, scratch.lean.along(axis)) {
                     return Answer::whole_line(false);
                 }
                 continue;

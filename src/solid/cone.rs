@@ -116,7 +116,7 @@ impl Solid for Cone {
     }
 
     /// The slab between the ends and the infinite cone, about the point nearest to the middle of the axis.
-    fn crossings(&self, ray: &Ray, _: Interval, _: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
+    fn crossings(&self, ray: &Ray, _: Interval, scratch: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
         let miss = Answer::whole_line(false);
         let Shaft { from, across_along, height, .. } = self.shaft;
         if height <= 0.0 || self.radii[0].max(self.radii[1]) <= 0.0 {
@@ -126,7 +126,7 @@ impl Solid for Cone {
         // Heights are taken from the ray's own origin: they decide flush faces, and are exact along the axes.
         let z = self.shaft.axis().dot(ray.origin - from);
         let (o, d) = (across_along * o, across_along * ray.dir);
-        let Some(ends) = self.shaft.between(z, d.z) else { return miss };
+        let Some(ends) = self.shaft.between(z, d.z, scratch.lean) else { return miss };
         let w = 0.5 * (self.radii[0] + self.radii[1]) + self.slope * o.z;
         if let Some([lo, hi]) = self.nappe(o.truncate(), d.truncate(), w, self.slope * d.z) {
             push_within(ends, [shift + lo, shift + hi], out);

@@ -1,5 +1,6 @@
 //! Where a ray passes through a boundary.
 
+use super::Body;
 use crate::geom::Interval;
 
 /// A place where a ray's line passes through the boundary of one solid.
@@ -37,6 +38,17 @@ pub struct Answer {
 }
 
 impl Answer {
+    /// Whether crossings are what an answer may have: finite, ascending, and, of a solid, ways in and out by turns.
+    pub fn is_sound(&self, crossings: &[Crossing], body: Body) -> bool {
+        let (mut last, mut inside) = (f64::NEG_INFINITY, self.inside);
+        crossings.iter().all(|c| {
+            let turns = inside != c.entering || body == Body::Sheet;
+            let ascends = last <= c.t && c.t.is_finite();
+            (last, inside) = (c.t, c.entering);
+            turns && ascends
+        })
+    }
+
     /// All crossings of the whole line.
     pub fn whole_line(inside: bool) -> Answer {
         Answer { inside, range: Interval::ALL }

@@ -78,14 +78,14 @@ impl Solid for Cylinder {
     }
 
     /// The slab between the caps and the infinite cylinder. A ray along the axis meets the caps alone.
-    fn crossings(&self, ray: &Ray, _: Interval, _: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
+    fn crossings(&self, ray: &Ray, _: Interval, scratch: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
         let miss = Answer::whole_line(false);
         let Shaft { from, across_along, height, .. } = self.shaft;
         if self.radius <= 0.0 || height <= 0.0 {
             return miss;
         }
         let (o, d) = (across_along * (ray.origin - from), across_along * ray.dir);
-        let Some(ends) = self.shaft.between(o.z, d.z) else { return miss };
+        let Some(ends) = self.shaft.between(o.z, d.z, scratch.lean) else { return miss };
         if let Some(walls) = self.within(o.truncate(), d.truncate()) {
             push_within(ends, walls, out);
         }

@@ -46,7 +46,7 @@ fn build(call: &Call) -> Result<Arc<dyn Solid>, BuildError> {
     Ok(Arc::new(HalfSpace { normal: normal / length, offset: offset / length }))
 }
 
-/// Points with `normal . p < offset`; a ray that runs in the plane is outside.
+/// Points with `normal . p < offset`; a ray that runs in the plane is inside where it leans to.
 #[derive(Clone, Copy, Debug)]
 pub struct HalfSpace {
     /// Outward, of unit length.
@@ -60,10 +60,11 @@ impl Solid for HalfSpace {
         Aabb::ALL
     }
 
-    fn crossings(&self, ray: &Ray, _: Interval, _: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
+    fn crossings(&self, ray: &Ray, _: Interval, scratch: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
         let (height, slope) = (self.offset - self.normal.dot(ray.origin), self.normal.dot(ray.dir));
         if slope == 0.0 {
-            return Answer::whole_line(0.0 < height);
+            let leans_in = || height == 0.0 && scratch.lean.dot(self.normal) < 0.0;
+            return Answer::whole_line(0.0 < height || leans_in());
         }
         out.push(Crossing::exact(height / slope, slope < 0.0, 0));
         Answer::whole_line(0.0 < slope)

@@ -33,7 +33,7 @@ use glam::{DAffine3, DVec3};
 
 pub use crossing::{Answer, Crossing};
 
-use crate::geom::{Aabb, Interval, Ray};
+use crate::geom::{Aabb, Interval, Lean, Ray};
 
 /// What a thing's crossings mean.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -131,6 +131,8 @@ pub trait Solid: Send + Sync + Debug {
 pub struct Scratch {
     /// Counts of work.
     pub counts: Counts,
+    /// How the ray leans, in the frame of the solid that is asked.
+    pub lean: Lean,
     /// What is known of the line being asked about, for each point set surface.
     pub lines: Vec<point_set::LineScratch>,
     /// Room for asking a point set surface about points.
@@ -170,6 +172,8 @@ pub struct Counts {
     pub cleaned: u64,
     /// Rays without a direction or not finite: they meet nothing.
     pub invalid_rays: u64,
+    /// Answers of leaves that are none ([`Answer::is_sound`]): the leaf is nowhere on that ray.
+    pub bad_leaves: u64,
 }
 
 impl Counts {
@@ -188,5 +192,6 @@ impl Counts {
         self.ties += o.ties;
         self.cleaned += o.cleaned;
         self.invalid_rays += o.invalid_rays;
+        self.bad_leaves += o.bad_leaves;
     }
 }

@@ -6,7 +6,8 @@ use glam::{DAffine3, DVec3};
 
 use super::block::Block;
 use super::{Answer, Crossing, Scratch, Solid};
-use crate::geom::{Aabb, Interval, Ray};
+use crate::geom::lean::is_between;
+use crate::geom::{Aabb, Interval, Lean, Ray};
 use crate::num::roots::ball;
 
 /// A box whose edges and corners are rounded with one radius: the Minkowski sum of its core and a ball.
@@ -28,17 +29,17 @@ impl RoundedBox {
         Aabb { min, max: max.max(min) }
     }
 
-    /// The range of the line in the outer box, the axis in whose low face it runs, if it does.
-    fn range(&self, ray: &Ray, shift: f64) -> Option<([f64; 2], Option<usize>)> {
+    /// The range of the line in the outer box, the axis in whose face it runs, if it does.
+    fn range(&self, ray: &Ray, shift: f64, lean: Lean) -> Option<([f64; 2], Option<usize>)> {
         let (mut lo, mut hi, mut face) = (f64::NEG_INFINITY, f64::INFINITY, None);
         for axis in 0..3 {
             let (o, d) = (ray.origin[axis], ray.dir[axis]);
             let (min, max) = (self.outer.min[axis], self.outer.max[axis]);
             if d == 0.0 {
-                if o < min || max <= o {
+                if !is_between(o, min, max, lean.along(axis)) {
                     return None;
                 }
-                face = if o == min { Some(axis) } else { face };
+                face = if o == min || o == max { Some(axis) } else { face };
                 continue;
             }
             let (near, far) = if 0.0 < d { (min, max) } else { (max, min) };
@@ -65,13 +66,13 @@ impl Solid for RoundedBox {
     /// The squared distance from the core is a sum over the axes whose slab the point is outside of: along the line a
     /// quadratic on each piece between two slab planes, convex as a whole. In each piece those axes alone make a ball, a
     /// cylinder or a slab of the radius; what is inside in any piece hangs together.
-    fn crossings(&self, ray: &Ray, _: Interval, _: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
+    fn crossings(&self, ray: &Ray, _: Interval, scratch: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
         let miss = Answer::whole_line(false);
         let core = self.core();
         let (center, half) = (core.center(), 0.5 * core.size());
         let (shift, o) = ray.nearest_to(center);
         let d = ray.dir;
-        let Some(([first, last], face)) = self.range(ray, shift) else { return miss };
+        let Some(([first, last], face)) = self.range(ray, shift, scratch.lean) else { return miss };
         let mut breaks = [last; BREAKS];
         breaks[0] = first;
         for axis in 0..3 {

@@ -3,7 +3,8 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::Crossing;
-use crate::geom::Aabb;
+use crate::geom::lean::is_between;
+use crate::geom::{Aabb, Lean};
 use crate::scene::Call;
 
 /// Numbers of the parts of the boundary.
@@ -69,12 +70,13 @@ impl Shaft {
     }
 
     /// Where a ray that begins at height `z` over `from` and climbs by `dz` is between the ends; the whole line where it
-    /// is level there. A level ray at the lower end is between them, one at the upper end is not.
+    /// is level there and, if it runs in an end, leans to between them.
     #[inline]
-    pub fn between(&self, z: f64, dz: f64) -> Option<[End; 2]> {
+    pub fn between(&self, z: f64, dz: f64, lean: Lean) -> Option<[End; 2]> {
         if dz == 0.0 {
             let level = [(f64::NEG_INFINITY, part::WALL), (f64::INFINITY, part::WALL)];
-            return (0.0 <= z && z < self.height).then_some(level);
+            let lean = lean.dot(self.axis());
+            return is_between(z, 0.0, self.height, lean).then_some(level);
         }
         let ends = [(-z / dz, part::BOTTOM), ((self.height - z) / dz, part::TOP)];
         Some(if 0.0 < dz { ends } else { [ends[1], ends[0]] })

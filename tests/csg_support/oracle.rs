@@ -229,7 +229,7 @@ fn track(leaf: &Leaf, ray: &Ray) -> Track {
     let mut crossings: Vec<(Crossing, f64)> = Vec::new();
     while lo < f64::INFINITY {
         let mut out = Vec::new();
-        let answer = leaf.solid.crossings(&local, Interval::new(lo, f64::INFINITY), &mut scratch, &mut out);
+        let answer = leaf.crossings(&local, Interval::new(lo, f64::INFINITY), &mut scratch, &mut out);
         inside = inside.or(Some(answer.inside));
         for c in out.into_iter().filter(|c| lo < c.t && c.t <= answer.range.hi) {
             let normal = leaf.place.normal_to_world(leaf.solid.normal(&local, &c, &mut scratch));

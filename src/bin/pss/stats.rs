@@ -79,6 +79,7 @@ struct CsgCounts {
     leaf_queries: u64,
     leaves_skipped: u64,
     ties: u64,
+    bad_leaves: u64,
 }
 
 impl ScanNotes {
@@ -117,6 +118,7 @@ impl Stats {
                 leaf_queries: counts.leaf_queries,
                 leaves_skipped: counts.leaves_skipped,
                 ties: counts.ties,
+                bad_leaves: counts.bad_leaves,
             },
             scans: scans.iter().map(ScanNotes::new).collect(),
         }

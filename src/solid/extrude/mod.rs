@@ -10,7 +10,8 @@ use glam::{DAffine3, DVec2, DVec3};
 use super::outline::Outline;
 use super::table::{Build, Primitive};
 use super::{Answer, Crossing, Scratch, Solid, parity};
-use crate::geom::{Aabb, Interval, Ray};
+use crate::geom::lean::is_between;
+use crate::geom::{Aabb, Interval, Lean, Ray};
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param, Value};
 
 /// The line of the table.
@@ -159,11 +160,12 @@ impl Extrusion {
     }
 
     /// The part of a ray between the two ends, and which it meets first; `None` where it passes by. A ray across z in
-    /// the lower face is inside, in the upper one it is not.
-    fn slab(&self, ray: &Ray) -> Option<(Interval, [u32; 2])> {
+    /// one of them is inside where it leans to.
+    fn slab(&self, ray: &Ray, lean: Lean) -> Option<(Interval, [u32; 2])> {
         let (o, d) = (ray.origin.z, ray.dir.z);
         if d == 0.0 {
-            return (0.0 <= o && o < self.height).then_some((Interval::ALL, [BOTTOM, TOP]));
+            let inside = is_between(o, 0.0, self.height, lean.along(2));
+            return inside.then_some((Interval::ALL, [BOTTOM, TOP]));
         }
         let (bottom, top) = (-o / d, (self.height - o) / d);
         Some(match 0.0 < d {
@@ -182,13 +184,13 @@ impl Solid for Extrusion {
         if self.is_nothing() { self.bounds.transformed(to_from) } else { self.box_under(to_from) }
     }
 
-    fn crossings(&self, ray: &Ray, _: Interval, _: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
+    fn crossings(&self, ray: &Ray, _: Interval, scratch: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
         let near = self.bounds.clip(ray);
         if self.is_nothing() || near.is_empty() {
             return Answer::whole_line(false);
         }
         let start = out.len();
-        if let Some((slab, ends)) = self.slab(ray) {
+        if let Some((slab, ends)) = self.slab(ray, scratch.lean) {
             if self.is_flat() || ray.dir.z == 0.0 {
                 self.straight(ray, near, slab, ends, out);
             } else {
