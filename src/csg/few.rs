@@ -3,41 +3,104 @@
 //! ties have a say; all other rays go the long way ([`super::sweep`]), with the same answers.
 
 use super::object::{Core, Scratch};
+use super::room::Room;
 use super::spans::Boundary;
+use super::tree::Tree;
 use super::truth::{State, Truth};
-use crate::geom::{Interval, Ray, tolerance};
+use glam::DVec3;
+
+use crate::geom::{Aabb, Interval, Ray, tolerance};
 use crate::solid::{self, Cost, Crossing};
 
 /// A table of all states of so many leaves is a word.
 const FEW: usize = 6;
+/// Closed forms are convex: a line crosses each at most twice.
+const MOST: usize = 2 * FEW;
+
+/// The leaves that a ray meets, ascending; places past the last hold [`NO_LEAF`].
+type Leaves = [u32; FEW];
+const NO_LEAF: u32 = u32::MAX;
 
 /// Truth of an object's root for each state of some leaves, all others outside.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Table {
     tree: u64,
-    leaves: [u32; FEW],
-    count: usize,
+    leaves: Leaves,
     /// Bit i: whether it is inside where the leaves are that have a bit in i.
     root: u64,
+}
+
+/// All leaves of an object that has few, all of closed form: their boxes would spare less than they cost.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct All {
+    leaves: Leaves,
+    count: usize,
+    root: u64,
+}
+
+impl All {
+    /// `None` where there are too many, or others.
+    pub fn new(tree: &Tree, costs: &[Cost], reaches: &[Aabb], outside: &State) -> Option<All> {
+        let matter = || (0u32..).zip(reaches).filter(|(_, b)| !b.is_empty()).map(|(leaf, _)| leaf);
+        if matter().nth(FEW).is_some() || matter().any(|leaf| costs[leaf as usize] != Cost::Closed) {
+            return None;
+        }
+        let (leaves, count) =
+            (std::array::from_fn(|slot| matter().nth(slot).unwrap_or(NO_LEAF)), matter().count());
+        let root = truths(tree, &leaves[..count], &mut outside.clone());
+        Some(All { leaves, count, root })
+    }
+}
+
+/// Truth of the root for all states of some leaves, in an order in which one leaf changes at a time (Gray's).
+fn truths(tree: &Tree, leaves: &[u32], state: &mut State) -> u64 {
+    state.reset(tree);
+    let mut root = 0;
+    for step in 0..1u64 << leaves.len() {
+        let mask = step ^ step >> 1;
+        if 0 < step {
+            let slot = step.trailing_zeros();
+            state.set(tree, leaves[slot as usize] as usize, Truth::known(mask >> slot & 1 == 1));
+        }
+        root |= u64::from(state.root() == Truth::Yes) << mask;
+    }
+    state.reset(tree);
+    root
 }
 
 /// Neighbouring rays mostly meet the same leaves.
 const TABLES: usize = 16;
 
+/// A crossing of one of the leaves met.
+#[derive(Clone, Copy, Debug)]
+struct Hit {
+    /// Of the leaves met, which.
+    slot: u32,
+    crossing: Crossing,
+}
+
 /// Room for the short way, lent by a thread.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Few {
-    /// The leaves met, ascending, and the ray in their frames.
-    leaves: [u32; FEW],
-    rays: Vec<Ray>,
+    leaves: Leaves,
     count: usize,
     /// Bit i: whether the line comes from inside the leaf in slot i.
     inside: u64,
-    /// Crossings, by leaf; of which leaf; and their order along the ray.
-    crossings: Vec<Crossing>,
-    slots: Vec<u8>,
-    order: Vec<(f64, u32)>,
+    /// The last answer of a leaf.
+    fresh: Vec<Crossing>,
+    /// Ascending.
+    hits: [Hit; MOST],
+    hit_count: usize,
     tables: [Table; TABLES],
+}
+
+impl Default for Few {
+    fn default() -> Few {
+        let no_table = Table { tree: 0, leaves: [NO_LEAF; FEW], root: 0 };
+        let no_hit = Hit { slot: 0, crossing: Crossing::exact(0.0, false, 0) };
+        let (hits, tables) = ([no_hit; MOST], [no_table; TABLES]);
+        Few { leaves: [NO_LEAF; FEW], count: 0, inside: 0, fresh: Vec::new(), hits, hit_count: 0, tables }
+    }
 }
 
 /// What a ray that meets few leaves finds.
@@ -59,9 +122,7 @@ pub(super) struct Look<'a> {
     core: &'a Core,
     ray: &'a Ray,
     range: Interval,
-    few: &'a mut Few,
-    /// A state to ask about more than the root.
-    state: &'a mut State,
+    room: &'a mut Room,
     scratch: &'a mut solid::Scratch,
     root: u64,
 }
@@ -71,26 +132,17 @@ impl<'a> Look<'a> {
     #[inline]
     pub fn new(core: &'a Core, ray: &'a Ray, range: Interval, scratch: &'a mut Scratch) -> Option<Look<'a>> {
         let Scratch { solid: scratch, room } = scratch;
-        let few = &mut room.few;
-        few.count = 0;
-        let (mut all, walk) = (true, &mut room.walk);
-        let mut meet = |leaf: u32| core.costs[leaf as usize] == Cost::Closed && few.meet(leaf);
-        walk.begin(&core.hierarchy, ray, range, |leaf, _| all &= meet(leaf));
-        while all && walk.least() < f64::INFINITY {
-            walk.step(&core.hierarchy, |leaf, _| all &= meet(leaf));
-        }
-        if !all {
-            return None;
-        }
-        room.enter(core.id, &core.outside);
-        let few = &mut room.few;
-        let root = few.table(core, &mut room.here);
-        few.ask(core, ray, scratch);
-        Some(Look { core, ray, range, few: &mut room.few, state: &mut room.here, scratch, root })
+        let root = match &core.few {
+            Some(all) => {
+                (room.few.leaves, room.few.count) = (all.leaves, all.count);
+                all.root
+            }
+            None if room.meet_few(core, ray, range) => room.table(core),
+            None => return None,
+        };
+        room.few.ask(core, ray, scratch).then_some(Look { core, ray, range, room, scratch, root })
     }
-}
 
-impl Look<'_> {
     /// Whether it is inside where these leaves are.
     #[inline]
     fn inside(&self, mask: u64) -> bool {
@@ -100,9 +152,11 @@ impl Look<'_> {
     /// The leaves that the ray is inside of where its range begins, and how many crossings come before.
     #[inline]
     fn begin(&self) -> (u64, usize) {
-        let order = &self.few.order;
-        let before = order.iter().take_while(|o| o.0 <= self.range.lo).count();
-        let mask = order[..before].iter().fold(self.few.inside, |mask, o| mask ^ self.few.bit(o.1));
+        let (mut mask, mut before) = (self.room.few.inside, 0);
+        for hit in self.room.few.hits().iter().take_while(|hit| hit.crossing.t <= self.range.lo) {
+            mask ^= 1 << hit.slot;
+            before += 1;
+        }
         (mask, before)
     }
 
@@ -110,16 +164,17 @@ impl Look<'_> {
     /// leaves after it.
     #[inline]
     fn change(&self, mut mask: u64, from: usize) -> Found<Option<(usize, u64)>> {
-        let order = &self.few.order;
+        let hits = self.room.few.hits();
         let was = self.inside(mask);
-        for (i, (t, crossing)) in order.iter().enumerate().skip(from) {
-            if self.range.hi < *t {
+        for (i, hit) in hits.iter().enumerate().skip(from) {
+            let t = hit.crossing.t;
+            if self.range.hi < t {
                 break;
             }
-            if order.get(i + 1).is_some_and(|next| next.0 == *t) {
+            if hits.get(i + 1).is_some_and(|next| next.crossing.t == t) {
                 return Found::Unclear;
             }
-            mask ^= self.few.bit(*crossing);
+            mask ^= 1 << hit.slot;
             if self.inside(mask) != was {
                 return Found::Answer(Some((i, mask)));
             }
@@ -158,43 +213,80 @@ impl Look<'_> {
     /// what fills the point just inside.
     #[inline]
     fn alone(&mut self, at: usize, after: u64) -> Option<Alone> {
-        let (t, index) = self.few.order[at];
-        let crossing = self.few.crossings[index as usize];
-        let slot = self.few.slots[index as usize] as usize;
-        let leaf = self.few.leaves[slot];
-        let leaves = self.core.tree.leaves();
-        let own = &leaves[leaf as usize];
-        let normal = own.solid.normal(&self.few.rays[slot], &crossing, self.scratch);
+        let hits = self.room.few.hits();
+        let Hit { slot, crossing } = hits[at];
+        let (core, t, leaf) = (self.core, crossing.t, self.room.few.leaves[slot as usize]);
+        let own = &core.tree.leaves()[leaf as usize];
+        let normal = own.solid.normal(&own.place.ray_to_local(self.ray), &crossing, self.scratch);
         let normal = own.place.normal_to_world(normal);
         let slope = self.ray.dir.dot(normal).abs();
-        let scale = self.core.bound.scale.max(self.ray.origin.length());
-        let reach = 2.0 * self.core.bound.shift
-            + tolerance::cleanup(scale)
-            + tolerance::cleanup(self.ray.at(t).length());
+        // No less than the lengths that the long way takes.
+        let length = |v: DVec3| v.abs().element_sum();
+        let (scale, point) = (core.bound.scale.max(length(self.ray.origin)), length(self.ray.at(t)));
+        let reach = 2.0 * core.bound.shift + tolerance::cleanup(scale) + tolerance::cleanup(point);
         let window = 2.0 * reach / slope;
-        let order = &self.few.order;
-        let before = at == 0 || order[at - 1].0 < t - window;
-        let behind = order.get(at + 1).is_none_or(|next| t + window < next.0);
+        let before = at == 0 || hits[at - 1].crossing.t < t - window;
+        let behind = hits.get(at + 1).is_none_or(|next| t + window < next.crossing.t);
         if !before || !behind || !window.is_finite() {
             return None;
         }
         let entering = self.inside(after);
         let within = if entering { after } else { after ^ 1 << slot };
-        let filler = if own.material.is_some() { None } else { self.filler(within) };
+        let filler = if own.material.is_some() { None } else { self.room.filler(core, within) };
         let flipped = crossing.entering != entering;
         let normal = if flipped { -normal } else { normal };
         Some(Alone { boundary: Boundary { t, leaf, crossing, normal, flipped, filler }, entering })
     }
+}
+
+impl Room {
+    /// Meets the leaves of a ray; false where they are too many, or not closed forms.
+    #[inline]
+    fn meet_few(&mut self, core: &Core, ray: &Ray, range: Interval) -> bool {
+        let few = &mut self.few;
+        (few.leaves, few.count) = ([NO_LEAF; FEW], 0);
+        let mut all = true;
+        let mut meet = |leaf: u32| core.costs[leaf as usize] == Cost::Closed && few.meet(leaf);
+        self.walk.begin(&core.hierarchy, ray, range, |leaf, _| all &= meet(leaf));
+        while all && self.walk.least() < f64::INFINITY {
+            self.walk.step(&core.hierarchy, |leaf, _| all &= meet(leaf));
+        }
+        all
+    }
+
+    /// Truth of the root for all states of the leaves met.
+    #[inline]
+    fn table(&mut self, core: &Core) -> u64 {
+        let leaves = &self.few.leaves;
+        let mix = |hash: u64, leaf: &u32| (hash ^ u64::from(*leaf)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let which = (leaves.iter().fold(core.id, mix) >> 60) as usize;
+        let table = &self.few.tables[which];
+        if table.tree == core.id && table.leaves == *leaves {
+            return table.root;
+        }
+        self.make_table(core, which)
+    }
+
+    #[cold]
+    fn make_table(&mut self, core: &Core, which: usize) -> u64 {
+        self.enter(core.id, &core.outside);
+        let Few { leaves, count, tables, .. } = &mut self.few;
+        let root = truths(&core.tree, &leaves[..*count], &mut self.here);
+        tables[which] = Table { tree: core.id, leaves: *leaves, root };
+        root
+    }
 
     /// Of the leaves with a material that fill the object where these leaves are, the last written.
-    fn filler(&mut self, mask: u64) -> Option<u32> {
-        let (core, few, state) = (self.core, &*self.few, &mut *self.state);
-        let leaves = core.tree.leaves();
-        let inside = (0..few.count).filter(|slot| mask >> slot & 1 == 1).map(|slot| few.leaves[slot]);
+    #[inline]
+    fn filler(&mut self, core: &Core, mask: u64) -> Option<u32> {
+        let (leaves, slots, met) = (core.tree.leaves(), 0..self.few.count, self.few.leaves);
+        let inside = slots.filter(|slot| mask >> slot & 1 == 1).map(|slot| met[slot]);
         let can = |leaf: &u32| leaves[*leaf as usize].can_fill();
         if !inside.clone().any(|leaf| can(&leaf)) {
             return None;
         }
+        self.enter(core.id, &core.outside);
+        let state = &mut self.here;
         state.reset(&core.tree);
         inside.clone().for_each(|leaf| state.set(&core.tree, leaf as usize, Truth::Yes));
         let fill = inside.filter(can).filter(|leaf| state.fills(&core.tree, *leaf as usize));
@@ -220,69 +312,34 @@ impl Few {
     }
 
     #[inline]
-    fn bit(&self, crossing: u32) -> u64 {
-        1 << self.slots[crossing as usize]
+    fn hits(&self) -> &[Hit] {
+        &self.hits[..self.hit_count]
     }
 
-    /// Truth of the root for all states of the leaves met.
+    /// Asks every leaf and puts the crossings in order; false where a line crosses one more than twice.
     #[inline]
-    fn table(&mut self, core: &Core, state: &mut State) -> u64 {
-        let leaves = &self.leaves[..self.count];
-        let hash = leaves
-            .iter()
-            .fold(core.id, |hash, leaf| (hash ^ u64::from(*leaf)).wrapping_mul(0x9e37_79b9_7f4a_7c15));
-        let table = &mut self.tables[(hash >> 60) as usize];
-        if table.tree != core.id || &table.leaves[..table.count] != leaves {
-            *table = Table {
-                tree: core.id,
-                leaves: self.leaves,
-                count: self.count,
-                root: truths(core, leaves, state),
-            };
-        }
-        table.root
-    }
-
-    /// Asks every leaf; puts the crossings in order.
-    #[inline]
-    fn ask(&mut self, core: &Core, ray: &Ray, scratch: &mut solid::Scratch) {
-        self.crossings.clear();
-        self.slots.clear();
-        self.rays.clear();
-        self.order.clear();
-        self.inside = 0;
+    fn ask(&mut self, core: &Core, ray: &Ray, scratch: &mut solid::Scratch) -> bool {
+        (self.inside, self.hit_count) = (0, 0);
         for slot in 0..self.count {
             let leaf = &core.tree.leaves()[self.leaves[slot] as usize];
-            let local = leaf.place.ray_to_local(ray);
-            self.rays.push(local);
-            let answer = leaf.crossings(&local, Interval::ALL, scratch, &mut self.crossings);
+            self.fresh.clear();
+            let answer =
+                leaf.crossings(&leaf.place.ray_to_local(ray), Interval::ALL, scratch, &mut self.fresh);
             debug_assert_eq!(answer.range, Interval::ALL, "closed forms answer for the whole line");
             self.inside |= u64::from(answer.inside) << slot;
-            for index in self.slots.len()..self.crossings.len() {
-                self.slots.push(slot as u8);
-                let t = self.crossings[index].t;
-                let mut at = self.order.len();
-                while 0 < at && t < self.order[at - 1].0 {
+            if 2 < self.fresh.len() {
+                return false;
+            }
+            for crossing in &self.fresh {
+                let mut at = self.hit_count;
+                while 0 < at && crossing.t < self.hits[at - 1].crossing.t {
+                    self.hits[at] = self.hits[at - 1];
                     at -= 1;
                 }
-                self.order.insert(at, (t, index as u32));
+                self.hits[at] = Hit { slot: slot as u32, crossing: *crossing };
+                self.hit_count += 1;
             }
         }
+        true
     }
-}
-
-/// Truth of the root for all states of some leaves, in an order in which one leaf changes at a time (Gray's).
-fn truths(core: &Core, leaves: &[u32], state: &mut State) -> u64 {
-    state.reset(&core.tree);
-    let mut root = 0;
-    for step in 0..1u64 << leaves.len() {
-        let mask = step ^ step >> 1;
-        if let Some(slot) = (0 < step).then(|| step.trailing_zeros() as usize) {
-            let truth = Truth::known(mask >> slot & 1 == 1);
-            state.set(&core.tree, leaves[slot] as usize, truth);
-        }
-        root |= u64::from(state.root() == Truth::Yes) << mask;
-    }
-    state.reset(&core.tree);
-    root
 }

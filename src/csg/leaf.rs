@@ -68,7 +68,7 @@ impl Leaf {
         scratch.lean = self.place.lean;
         let first = out.len();
         let answer = self.solid.crossings(local, range, scratch, out);
-        if answer.is_sound(&out[first..], self.solid.body()) {
+        if answer.is_sound(&out[first..], || self.solid.body()) {
             return answer;
         }
         scratch.counts.bad_leaves += 1;

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::cleanup::{Bound, Cleaner};
 use super::expr::Expr;
-use super::few::{Found, Look};
+use super::few::{All, Found, Look};
 use super::hierarchy::{Hierarchy, worst_condition};
 use super::leaf::Leaf;
 use super::reach::reaches;
@@ -42,6 +42,8 @@ pub(super) struct Core {
     pub outside: State,
     /// For each leaf what asking it costs.
     pub costs: Vec<Cost>,
+    /// All leaves, where they are few and of closed form.
+    pub few: Option<All>,
     /// For each leaf [`Leaf::scale`].
     pub scales: Vec<f64>,
     pub bound: Bound,
@@ -56,14 +58,16 @@ impl Core {
             shift: most(|l| l.solid.shift_bound() * l.place.stretch),
             grain: most(|l| l.solid.grain() * l.place.stretch),
         };
-        let costs = leaves.iter().map(|l| l.solid.cost()).collect();
+        let costs: Vec<Cost> = leaves.iter().map(|l| l.solid.cost()).collect();
         let scales = leaves.iter().map(Leaf::scale).collect();
         let condition = worst_condition(leaves.iter().map(|l| l.place.condition));
         let tree = Tree::new(leaves, expr);
-        let hierarchy = Hierarchy::new(&reaches(&tree), condition);
+        let reaches = reaches(&tree);
+        let hierarchy = Hierarchy::new(&reaches, condition);
         let outside = State::outside(&tree);
+        let few = All::new(&tree, &costs, &reaches, &outside);
         let id = NEXT.fetch_add(1, Ordering::Relaxed);
-        Core { id, tree, hierarchy, outside, costs, scales, bound }
+        Core { id, tree, hierarchy, outside, costs, few, scales, bound }
     }
 }
 

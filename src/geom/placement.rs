@@ -18,6 +18,8 @@ pub struct Placement {
     pub stretch: f64,
     /// By how much rounding errors can grow on the way there and back: 1 for a rotation and uniform scaling.
     pub condition: f64,
+    /// Whether both frames are one.
+    is_identity: bool,
     /// How rays lean there.
     pub lean: Lean,
 }
@@ -30,6 +32,7 @@ impl Placement {
         normals: DMat3::IDENTITY,
         stretch: 1.0,
         condition: 1.0,
+        is_identity: true,
         lean: Lean::of_world(),
     };
 
@@ -57,18 +60,19 @@ impl Placement {
             normals: local_from_world.matrix3.transpose(),
             stretch,
             condition: condition.max(1.0),
+            is_identity: world_from_local == DAffine3::IDENTITY,
             lean: Lean::local(&local_from_world.matrix3),
         })
     }
 
     /// A world ray in the local frame.
     pub fn ray_to_local(&self, ray: &Ray) -> Ray {
-        ray.transformed(&self.local_from_world)
+        if self.is_identity { *ray } else { ray.transformed(&self.local_from_world) }
     }
 
     /// A local normal as a unit normal of the world. Mirrors keep it outward.
     pub fn normal_to_world(&self, normal: DVec3) -> DVec3 {
-        (self.normals * normal).normalize_or_zero()
+        if self.is_identity { normal } else { (self.normals * normal).normalize_or_zero() }
     }
 
     /// The size of the translation, world length: part of the scale of rounding errors.

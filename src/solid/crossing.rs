@@ -39,14 +39,14 @@ pub struct Answer {
 
 impl Answer {
     /// Whether crossings are what an answer may have: finite, ascending, and, of a solid, ways in and out by turns.
-    pub fn is_sound(&self, crossings: &[Crossing], body: Body) -> bool {
-        let (mut last, mut inside) = (f64::NEG_INFINITY, self.inside);
-        crossings.iter().all(|c| {
-            let turns = inside != c.entering || body == Body::Sheet;
-            let ascends = last <= c.t && c.t.is_finite();
+    pub fn is_sound(&self, crossings: &[Crossing], body: impl FnOnce() -> Body) -> bool {
+        let (mut last, mut inside, mut ascend, mut turn) = (f64::MIN, self.inside, true, true);
+        for c in crossings {
+            ascend &= last <= c.t && c.t <= f64::MAX;
+            turn &= inside != c.entering;
             (last, inside) = (c.t, c.entering);
-            turns && ascends
-        })
+        }
+        ascend && (turn || body() == Body::Sheet)
     }
 
     /// All crossings of the whole line.
