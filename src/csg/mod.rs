@@ -14,7 +14,9 @@ mod queue;
 mod reach;
 mod room;
 mod spans;
+mod stem;
 mod sweep;
+mod topset;
 mod tree;
 mod truth;
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::expr::Expr;
 use super::leaf::Leaf;
+use super::stem::Stems;
 
 /// How a node combines its children.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -16,6 +17,13 @@ pub(super) enum Kind {
     And,
     /// True where an odd number of children are.
     Xor,
+}
+
+impl Kind {
+    /// Whether one is a union and the other an intersection.
+    pub fn is_other(self, kind: Kind) -> bool {
+        matches!((self, kind), (Kind::Or, Kind::And) | (Kind::And, Kind::Or))
+    }
 }
 
 /// The link from a child to a node above it.
@@ -49,7 +57,7 @@ impl Up {
     }
 }
 
-/// A node: its children are known by how many they are.
+/// A node: its children are known by how many they are, the one on the level below of its stem left out.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
     pub kind: Kind,
@@ -94,6 +102,7 @@ pub struct Tree {
     /// For each node and each leaf the one node it counts in, where it is one.
     pub(super) node_up: Vec<Up>,
     pub(super) leaf_up: Vec<Up>,
+    pub(super) stems: Stems,
     /// For each leaf, whether it is negated on its way to the root; `None` where an exclusion or uses of both kinds
     /// leave that open.
     pub(super) negated: Vec<Option<bool>>,
@@ -133,11 +142,13 @@ impl Tree {
             negated: Vec::new(),
             node_up: Vec::new(),
             leaf_up: Vec::new(),
+            stems: Stems::default(),
             nodes,
             leaves: leaves.into(),
         };
         tree.node_up = (0..tree.nodes.len()).map(|i| Up::only(tree.node_ups.of(i))).collect();
         tree.leaf_up = (0..tree.leaves.len()).map(|i| Up::only(tree.leaf_ups.of(i))).collect();
+        tree.stems = Stems::new(&mut tree.nodes, &tree.node_up);
         tree.negated = tree.senses();
         tree
     }
@@ -145,6 +156,12 @@ impl Tree {
     /// The leaves.
     pub fn leaves(&self) -> &[Leaf] {
         &self.leaves
+    }
+
+    /// The top of a node's stem.
+    #[inline]
+    pub(super) fn top(&self, node: usize) -> usize {
+        self.stems.of(node).map_or(node, |(stem, _)| stem.top as usize)
     }
 
     /// For each leaf whether it is negated on its way up.

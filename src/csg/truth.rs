@@ -1,8 +1,9 @@
 //! Three-valued truth of a tree by counters: each leaf is out, in, or not asked yet; each node knows how many of its
-//! children are true and how many unknown. One change costs the nodes that change with it, and going back to the
-//! outside costs what was changed, however many leaves there are.
+//! children are true and how many unknown. One change costs the stems ([`super::stem`]) that change with it, and going back
+//! to the outside costs what was changed, however many leaves there are.
 
-use super::tree::{Kind, Tree, Up};
+use super::topset::Words;
+use super::tree::{Kind, Node, Tree, Up};
 
 /// Out, in, or not known yet.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -22,7 +23,7 @@ impl Truth {
         if inside { Truth::Yes } else { Truth::No }
     }
 
-    fn negated(self, negated: bool) -> Truth {
+    pub fn negated(self, negated: bool) -> Truth {
         match (self, negated) {
             (Truth::Yes, true) => Truth::No,
             (Truth::No, true) => Truth::Yes,
@@ -61,7 +62,10 @@ impl Count {
 #[derive(Clone, Debug, Default)]
 pub(super) struct State {
     leaves: Vec<Truth>,
+    /// Of the nodes of a stem only the highest has a value.
     counts: Vec<Count>,
+    /// Of the stems.
+    words: Words,
     /// Leaves set since the outside.
     touched: Vec<u32>,
     /// Nodes whose children changed, the lowest last.
@@ -79,6 +83,7 @@ impl State {
             leaves: vec![Truth::No; tree.leaves().len()],
             counts: vec![Count::default(); tree.nodes.len()],
             watched: vec![false; tree.nodes.len()],
+            words: tree.stems.words(),
             ..State::default()
         };
         for leaf in 0..tree.leaves().len() {
@@ -87,8 +92,10 @@ impl State {
             }
         }
         for i in 0..tree.nodes.len() {
-            let value = state.evaluated(tree, i);
-            state.counts[i].value = value;
+            let (top, _, value) = state.renew(tree, i);
+            if top != i {
+                continue;
+            }
             for up in tree.node_ups.of(i) {
                 state.counts[up.node as usize].yes += u32::from(value.negated(up.negated) == Truth::Yes);
             }
@@ -120,7 +127,8 @@ impl State {
         }
     }
 
-    /// Whether some way from these nodes up to the root passes the test all along.
+    /// Whether some way from these nodes up to the root passes the test all along. What is tested is a node with all
+    /// above it in its stem.
     fn climbs(&self, tree: &Tree, ups: &[Up], test: impl Fn(usize) -> bool) -> bool {
         let root = tree.nodes.len() - 1;
         let mut node = match ups {
@@ -131,10 +139,11 @@ impl State {
             if !test(node) {
                 return false;
             }
-            if node == root {
+            let top = tree.top(node);
+            if top == root {
                 return true;
             }
-            match tree.node_ups.of(node) {
+            match tree.node_ups.of(top) {
                 [one] => node = one.node as usize,
                 several => return self.climbs_somewhere(tree, several, test),
             }
@@ -150,47 +159,68 @@ impl State {
             if !tried.insert(node) || !test(node as usize) {
                 continue;
             }
-            if node as usize == root {
+            let top = tree.top(node as usize);
+            if top == root {
                 return true;
             }
-            open.extend(tree.node_ups.of(node as usize).iter().map(|up| up.node));
+            open.extend(tree.node_ups.of(top).iter().map(|up| up.node));
         }
         false
     }
 
     /// Whether knowing an open leaf can tell the root: every node on a way up is open.
     pub fn matters(&self, tree: &Tree, leaf: usize) -> bool {
-        self.climbs(tree, tree.leaf_ups.of(leaf), |node| self.counts[node].value == Truth::Open)
+        let open = |node: usize| match tree.stems.of(node) {
+            None => self.counts[node].value == Truth::Open,
+            Some((stem, place)) => {
+                self.counts[stem.top as usize].value == Truth::Open && stem.matters(&self.words, place.level)
+            }
+        };
+        self.climbs(tree, tree.leaf_ups.of(leaf), open)
     }
 
-    /// Of the nodes on an open leaf's way up the first that is known, where there is only one way: knowing the leaf cannot
-    /// tell the root until that node is open again.
+    /// Of the stems on an open leaf's way up the top of the first that is known, where there is only one way: knowing the leaf
+    /// cannot tell the root until that is open again.
     pub fn blocker(&self, tree: &Tree, leaf: usize) -> Option<u32> {
         let mut up = tree.leaf_up[leaf];
         while up.is_one() {
-            if self.counts[up.node as usize].value != Truth::Open {
-                return Some(up.node);
+            let top = tree.top(up.node as usize);
+            if self.counts[top].value != Truth::Open {
+                return Some(top as u32);
             }
-            up = tree.node_up[up.node as usize];
+            up = tree.node_up[top];
         }
         None
     }
 
-    /// Puts a node into `woken` when it is open again.
-    pub fn watch(&mut self, node: u32) {
-        self.watched[node as usize] = true;
+    /// Puts the top of a stem into `woken` when it is open again.
+    pub fn watch(&mut self, top: u32) {
+        self.watched[top as usize] = true;
     }
 
     /// Whether a leaf and all nodes above one of its uses are inside; nothing may be open.
     pub fn fills(&self, tree: &Tree, leaf: usize) -> bool {
-        self.leaves[leaf] == Truth::Yes
-            && self.climbs(tree, tree.leaf_ups.of(leaf), |node| self.counts[node].value == Truth::Yes)
+        let inside = |node: usize| match tree.stems.of(node) {
+            None => self.counts[node].value == Truth::Yes,
+            Some((stem, place)) => {
+                stem.value_at(&self.words, place.level) == Truth::Yes
+                    && !stem.turns_above(&self.words, place.level, Truth::Yes)
+            }
+        };
+        self.leaves[leaf] == Truth::Yes && self.climbs(tree, tree.leaf_ups.of(leaf), inside)
     }
 
     /// Whether a leaf and all nodes above one of its uses differ from another state; nothing may be open.
     pub fn differs(&self, before: &State, tree: &Tree, leaf: usize) -> bool {
-        let node = |node: usize| self.counts[node].value != before.counts[node].value;
-        self.leaves[leaf] != before.leaves[leaf] && self.climbs(tree, tree.leaf_ups.of(leaf), node)
+        let differ = |node: usize| match tree.stems.of(node) {
+            None => self.counts[node].value != before.counts[node].value,
+            Some((stem, place)) => {
+                let value = |state: &State| stem.value_at(&state.words, place.level);
+                let turns = |state: &State| stem.turns_above(&state.words, place.level, value(state));
+                value(self) != value(before) && !turns(self) && !turns(before)
+            }
+        };
+        self.leaves[leaf] != before.leaves[leaf] && self.climbs(tree, tree.leaf_ups.of(leaf), differ)
     }
 
     /// Sets a leaf.
@@ -211,11 +241,12 @@ impl State {
         while up.is_one() {
             let node = up.node as usize;
             self.counts[node].recount(up, was, is);
-            (was, is) = self.renew(tree, node);
+            let top;
+            (top, was, is) = self.renew(tree, node);
             if was == is {
                 return;
             }
-            (up, below) = (tree.node_up[node], Some(node));
+            (up, below) = (tree.node_up[top], Some(top));
         }
         if up != Up::NONE {
             let ups = below.map_or_else(|| tree.leaf_ups.of(leaf), |node| tree.node_ups.of(node));
@@ -230,9 +261,9 @@ impl State {
         while let Some(node) = self.waiting.pop() {
             let node = node as usize;
             self.counts[node].queued = false;
-            let (was, is) = self.renew(tree, node);
+            let (top, was, is) = self.renew(tree, node);
             if is != was {
-                self.count(tree.node_ups.of(node), was, is);
+                self.count(tree.node_ups.of(top), was, is);
             }
         }
     }
@@ -249,13 +280,23 @@ impl State {
         }
     }
 
-    /// Looks at a node again; its value before and now.
-    fn renew(&mut self, tree: &Tree, node: usize) -> (Truth, Truth) {
-        let is = self.evaluated(tree, node);
-        let was = std::mem::replace(&mut self.counts[node].value, is);
-        if is == Truth::Open && was != is && std::mem::take(&mut self.watched[node]) {
-            self.woken.push(node as u32);
+    /// Looks at a node again; the top of its stem, and the value of that before and now.
+    #[inline]
+    fn renew(&mut self, tree: &Tree, node: usize) -> (usize, Truth, Truth) {
+        let (top, is) = match tree.stems.of(node) {
+            None => (node, self.evaluated(tree, node)),
+            Some((stem, place)) => {
+                let Count { yes, open, .. } = self.counts[node];
+                let Node { kind, arity } = tree.nodes[node];
+                let decided = if kind == Kind::Or { 0 < yes } else { yes + open < arity };
+                stem.put(&mut self.words, place.level, decided, 0 < open);
+                (stem.top as usize, stem.value(&self.words))
+            }
+        };
+        let was = std::mem::replace(&mut self.counts[top].value, is);
+        if is == Truth::Open && was != is && std::mem::take(&mut self.watched[top]) {
+            self.woken.push(top as u32);
         }
-        (was, is)
+        (top, was, is)
     }
 }
