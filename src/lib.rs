@@ -22,6 +22,7 @@
 pub mod check;
 pub mod cloud;
 pub mod csg;
+mod deep;
 pub mod diag;
 pub mod film;
 pub mod geom;

@@ -9,7 +9,7 @@ use super::lines::{self, Event, Line};
 use super::logic::{Logic, State};
 use crate::csg::{Leaf, Object};
 use crate::geom::{Aabb, Ray, tolerance};
-use crate::prepare::Outline;
+use crate::prepare::{Cutting, Outline};
 use crate::solid::Scratch;
 use crate::source::Span;
 
@@ -79,7 +79,7 @@ impl<'a> Evidence<'a> {
         let look = |batch: &[Line]| {
             let mut witness = Witness::new(object, outline, &logic);
             batch.iter().for_each(|line| witness.look(line));
-            witness.seen
+            witness.finish()
         };
         let seen: Vec<Seen> = lines.par_chunks(BATCH).map(look).collect();
         let seen = seen.into_iter().fold(Seen::default(), Seen::add);
@@ -97,6 +97,17 @@ struct Witness<'a> {
     events: Vec<Event>,
     state: State,
     scratch: Scratch,
+    cuts: Vec<CutSeen>,
+}
+
+/// What was seen of a cut.
+#[derive(Clone, Debug, Default)]
+struct CutSeen {
+    /// Whether a line was inside the base, and whether something was left of it there.
+    base: bool,
+    left: bool,
+    /// For each cutter whether it took something away, and whether it did not hold somewhere in the base.
+    cutters: Vec<[bool; 2]>,
 }
 
 impl<'a> Witness<'a> {
@@ -110,7 +121,23 @@ impl<'a> Witness<'a> {
             events: Vec::new(),
             state: State::default(),
             scratch: Scratch::default(),
+            cuts: outline.cuts.iter().map(CutSeen::new).collect(),
         }
+    }
+
+    /// All that was seen, operands of cuts by their places.
+    fn finish(self) -> Seen {
+        let mut seen = self.seen;
+        for (cut, found) in self.outline.cuts.iter().zip(&self.cuts) {
+            let base = cut.base.as_ref().map(|base| base.at);
+            seen.bases.extend(base.filter(|_| found.base));
+            seen.left.extend(base.filter(|_| found.left));
+            for (cutter, [cutting, uncovering]) in cut.cutters.iter().zip(&found.cutters) {
+                seen.cutting.extend(cutting.then_some(cutter.at));
+                seen.uncovering.extend(uncovering.then_some(cutter.at));
+            }
+        }
+        seen
     }
 
     fn look(&mut self, line: &Line) {
@@ -184,22 +211,22 @@ impl<'a> Witness<'a> {
             }
         }
         seen.parts.extend(parts);
-        for (cut, nodes) in self.outline.cuts.iter().zip(&self.logic.cuts) {
+        for (found, nodes) in self.cuts.iter_mut().zip(&self.logic.cuts) {
             let held = |node: &Option<u32>| node.is_some_and(|n| holds[n as usize]);
-            let base = cut.base.as_ref().map(|b| b.at).filter(|_| held(&nodes.base));
-            seen.bases.extend(base);
-            if !nodes.cutters.iter().any(held) {
-                seen.left.extend(base);
-            }
-            for (cutter, node) in cut.cutters.iter().zip(&nodes.cutters) {
-                if node.is_some_and(|n| holds[n as usize] && self.state.tells[n as usize]) {
-                    seen.cutting.insert(cutter.at);
-                }
-                if base.is_some() && !held(node) {
-                    seen.uncovering.insert(cutter.at);
-                }
+            let in_base = held(&nodes.base);
+            found.base |= in_base;
+            found.left |= in_base && !nodes.cutters.iter().any(held);
+            for ([cutting, uncovering], node) in found.cutters.iter_mut().zip(&nodes.cutters) {
+                *cutting |= node.is_some_and(|n| holds[n as usize] && self.state.tells[n as usize]);
+                *uncovering |= in_base && !held(node);
             }
         }
+    }
+}
+
+impl CutSeen {
+    fn new(cut: &Cutting) -> CutSeen {
+        CutSeen { cutters: vec![[false; 2]; cut.cutters.len()], ..CutSeen::default() }
     }
 }
 

@@ -4,6 +4,7 @@ use glam::DAffine3;
 
 use super::bounding::bounded_by;
 use super::lower::Lowering;
+use crate::deep;
 use crate::diag::Diagnostic;
 use crate::geom::Aabb;
 use crate::scene::{BooleanOp, Operand, Shape, ShapeKind};
@@ -12,6 +13,10 @@ impl Lowering<'_, '_> {
     /// A box around the image of a shape: tight for leaves and unions; for the other operators that of what they are
     /// cut from. Unbounded where the shape is.
     pub(super) fn extent(&mut self, shape: &Shape, to_from: &DAffine3) -> Result<Aabb, Diagnostic> {
+        deep::step(|| self.extent_here(shape, to_from))
+    }
+
+    fn extent_here(&mut self, shape: &Shape, to_from: &DAffine3) -> Result<Aabb, Diagnostic> {
         match &shape.0.kind {
             ShapeKind::Leaf { call, .. } => {
                 let solid = self.any_solid(shape)?;

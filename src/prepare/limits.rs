@@ -3,6 +3,7 @@
 
 use std::collections::HashMap;
 
+use crate::deep;
 use crate::diag::Diagnostic;
 use crate::scene::{Shape, ShapeKind};
 
@@ -31,7 +32,7 @@ fn count(shape: &Shape, known: &mut HashMap<usize, u64>) -> u64 {
         return 1;
     }
     let children = shape.0.kind.children();
-    let found = children.fold(0u64, |sum, child| sum.saturating_add(count(child, known)));
+    let found = children.fold(0u64, |sum, child| sum.saturating_add(deep::step(|| count(child, known))));
     known.insert(key, found);
     found
 }

@@ -13,6 +13,7 @@ use super::outline::Outline;
 use super::samples::{Sampling, sample};
 use crate::cloud::Cloud;
 use crate::csg::{Clipped, Clippee, Expr, Leaf, Object};
+use crate::deep;
 use crate::diag::Diagnostic;
 use crate::geom::{Aabb, Placement};
 use crate::scene::{BooleanOp, Call, FitTo, MaterialId, Operand, Shape, ShapeKind, Value};
@@ -93,6 +94,10 @@ impl<'b, 'o> Lowering<'b, 'o> {
     }
 
     fn lower(&mut self, shape: &Shape, context: Context) -> Result<Lowered, Diagnostic> {
+        deep::step(|| self.lower_here(shape, context))
+    }
+
+    fn lower_here(&mut self, shape: &Shape, context: Context) -> Result<Lowered, Diagnostic> {
         match &shape.0.kind {
             ShapeKind::Leaf { call, name } => self.leaf(shape, call, name, context),
             ShapeKind::Transform { world_from_local, child } => {
