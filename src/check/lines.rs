@@ -15,7 +15,7 @@ use crate::solid::{Crossing, Scratch};
 /// Lines through the whole, each leaf, each solid drawn, each meeting of cutter and base.
 const THROUGH: [u64; 4] = [2000, 24, 64, 48];
 /// Lines times nodes of the expression that are looked at; beyond, only every so many-th line is cast.
-const WORK: u64 = 100_000_000;
+const WORK: u64 = 30_000_000;
 
 /// A line and the leaf it is aimed at.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::cleanup::{Bound, Cleaner};
 use super::expr::Expr;
-use super::few::{All, Found, Look};
+use super::few::{All, Look};
 use super::hierarchy::{Hierarchy, worst_condition};
 use super::leaf::Leaf;
 use super::reach::reaches;
@@ -94,7 +94,7 @@ impl Object {
 
     /// The first boundary in the range, and whether the ray goes in there.
     pub fn first(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> Option<(Boundary, bool)> {
-        if let Some(Found::Answer(found)) = Look::new(&self.core, ray, range, scratch).map(Look::first) {
+        if let Some(found) = Look::new(&self.core, ray, range, scratch).and_then(Look::first) {
             return found;
         }
         self.cleaner(ray, range, scratch).first()
@@ -103,7 +103,7 @@ impl Object {
     /// Whether any part of the range is inside, for a ray that leaves a surface where the range begins: what a leaf does
     /// not resolve there ([`crate::solid::Solid::grain`]) does not count.
     pub fn any(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> bool {
-        if let Some(Found::Answer(found)) = Look::new(&self.core, ray, range, scratch).map(Look::any) {
+        if let Some(found) = Look::new(&self.core, ray, range, scratch).and_then(Look::any) {
             return found;
         }
         self.cleaner(ray, range, scratch).any()

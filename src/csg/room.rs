@@ -2,6 +2,7 @@
 
 use super::few::Few;
 use super::hierarchy::Walk;
+use super::object::Core;
 use super::open::Open;
 use super::queue::Queue;
 use super::truth::State;
@@ -63,14 +64,19 @@ pub(super) struct Room {
 }
 
 impl Room {
-    /// Gets ready for a tree.
-    pub fn enter(&mut self, tree: u64, outside: &State) {
-        if self.tree != Some(tree) {
-            self.tree = Some(tree);
-            self.state.clone_from(outside);
-            self.here.clone_from(outside);
-            self.before.clone_from(outside);
+    /// Makes the states those of a tree.
+    pub fn states_of(&mut self, core: &Core) {
+        if self.tree != Some(core.id) {
+            self.tree = Some(core.id);
+            self.state.clone_from(&core.outside);
+            self.here.clone_from(&core.outside);
+            self.before.clone_from(&core.outside);
         }
+    }
+
+    /// Gets ready for a sweep of a tree.
+    pub fn enter(&mut self, core: &Core) {
+        self.states_of(core);
         self.met.clear();
         self.open.clear();
         self.queue.clear();

@@ -50,7 +50,7 @@ impl<'a> Sweep<'a> {
         room: &'a mut Room,
         scratch: &'a mut solid::Scratch,
     ) -> Sweep<'a> {
-        room.enter(core.id, &core.outside);
+        room.enter(core);
         let Room { met, walk, queue, .. } = room;
         walk.begin(&core.hierarchy, ray, range, |leaf, inside| show(met, queue, range, leaf, inside));
         Sweep { core, ray, range, room, scratch, at: range.lo, inside: false }
