@@ -136,7 +136,7 @@ fn a4_many_operands_in_any_brackets() {
 
 /// A7 and A8: the matrix of positions by operators, both orders; what touches leaves neither film nor wall.
 #[test]
-fn a7_a8_the_matrix_of_positions() {
+fn a7_a8_cases_1_to_11_the_matrix_of_positions() {
     let mut scratch = Scratch::default();
     let pairs: [(&[f64], &[f64]); 11] = [
         (&[1.0, 3.0], &[5.0, 7.0]),
@@ -197,7 +197,7 @@ fn a9_a14_slits_and_films_up_to_tau_vanish() {
 
 /// A10: a chain of a thousand slits of 0.9 tau is one span with its own two ends.
 #[test]
-fn a10_a_chain_of_slits_is_one_span() {
+fn a10_case_17_a_chain_of_slits_is_one_span() {
     let mut scratch = Scratch::default();
     let (step, slit) = (1.0, 0.9 * 16.0 * f64::EPSILON * 1000.0);
     let lines =
@@ -213,7 +213,7 @@ fn a10_a_chain_of_slits_is_one_span() {
 
 /// A13: a leaf whose box is too small, or which answers no numbers, inverts nothing and hangs nothing.
 #[test]
-fn a13_a_leaf_that_lies_cannot_invert_what_follows() {
+fn a13_case_19_a_leaf_that_lies_cannot_invert_what_follows() {
     #[derive(Debug)]
     struct Liar(Line, Aabb);
     impl pss::solid::Solid for Liar {
@@ -249,8 +249,95 @@ fn a13_a_leaf_that_lies_cannot_invert_what_follows() {
         assert_eq!(have.len(), 2, "{have:?}");
         assert_eq!((have[0].1, have[1]), (3.0, (5.0, 6.0)), "{have:?}");
     }
-    let nan = Line::new(&[f64::NAN, f64::NAN]);
-    let liar = Liar(nan, Aabb { min: glam::DVec3::NEG_ONE, max: glam::DVec3::ONE });
-    let leaves = vec![Leaf::new(Arc::new(liar), pss::geom::Placement::IDENTITY)];
-    assert_eq!(list(&Object::new(leaves, &leaf(0)), &mut scratch), vec![]);
+    // No numbers, ends in the wrong order, ends at infinity: no answer at all. The neighbour stays whole, and it is told.
+    let (nan, inf) = (f64::NAN, f64::INFINITY);
+    for (told, ends) in
+        [[nan, nan], [1.0, nan], [nan, 3.0], [3.0, 1.0], [-inf, inf], [1.0, inf]].iter().enumerate()
+    {
+        let place = pss::geom::Placement::IDENTITY;
+        let all = vec![Leaf::new(Arc::new(Raw(ends.to_vec())), place), line::leaf(Line::new(&[5.0, 6.0]), 1)];
+        let object = Object::new(all, &Expr::Or(vec![leaf(0), leaf(1)]));
+        assert_eq!(list(&object, &mut scratch), vec![(5.0, 6.0)], "{ends:?}");
+        assert!((told as u64) < scratch.solid.counts.bad_leaves, "{ends:?}");
+    }
+    assert!(6 <= scratch.solid.counts.bad_leaves);
+    // Either zero is the same end.
+    let zeros = [Line::new(&[-1.0, -0.0]), Line::new(&[0.0, 1.0])];
+    let object = Object::new(leaves(zeros.into()), &Expr::Or(vec![leaf(0), leaf(1)]));
+    assert_eq!(list(&object, &mut scratch), vec![(-1.0, 1.0)]);
+}
+
+/// Tells these ends, whatever they are.
+#[derive(Debug)]
+struct Raw(Vec<f64>);
+
+impl pss::solid::Solid for Raw {
+    fn bounds(&self) -> Aabb {
+        Aabb { min: glam::DVec3::NEG_ONE, max: glam::DVec3::splat(9.0) }
+    }
+
+    fn crossings(
+        &self,
+        _: &pss::geom::Ray,
+        _: Interval,
+        _: &mut pss::solid::Scratch,
+        out: &mut Vec<pss::solid::Crossing>,
+    ) -> pss::solid::Answer {
+        let crossing = |(i, t): (usize, &f64)| pss::solid::Crossing::exact(*t, i % 2 == 0, 0);
+        out.extend(self.0.iter().enumerate().map(crossing));
+        pss::solid::Answer::whole_line(false)
+    }
+
+    fn normal(
+        &self,
+        _: &pss::geom::Ray,
+        _: &pss::solid::Crossing,
+        _: &mut pss::solid::Scratch,
+    ) -> glam::DVec3 {
+        glam::DVec3::X
+    }
+}
+
+/// A11: m(A) + m(B) = m(A | B) + m(A & B), and m(A ^ B) = m(A) + m(B) - 2 m(A & B), exactly.
+#[test]
+fn a11_measures_add_up() {
+    let (mut scratch, mut draws) = (Scratch::default(), Draws::new(11));
+    for _ in 0..TRIALS {
+        let leaves = leaves(vec![line::random(&mut draws, false), line::random(&mut draws, false)]);
+        let both = || vec![leaf(0), leaf(1)];
+        let mut measure = |expr: Expr| {
+            let spans = list(&Object::new(leaves.clone(), &expr), &mut scratch);
+            spans.iter().map(|s| s.1 - s.0).sum::<f64>()
+        };
+        let (a, b) = (measure(leaf(0)), measure(leaf(1)));
+        let (or, and, xor) =
+            (measure(Expr::Or(both())), measure(Expr::And(both())), measure(Expr::Xor(both())));
+        assert_eq!(a + b, or + and);
+        assert_eq!(xor, a + b - 2.0 * and);
+    }
+}
+
+/// A15: who is written first owns a shared front, a cutter its cut, whatever the order of operands; the cut's normal points
+/// into the cutter.
+#[test]
+fn a15_owners_are_the_first_written_under_any_order() {
+    let mut scratch = Scratch::default();
+    for turned in [false, true] {
+        let order = |a: u32, b: u32| if turned { vec![leaf(b), leaf(a)] } else { vec![leaf(a), leaf(b)] };
+        let lines = || leaves(vec![Line::new(&[1.0, 3.0]), Line::new(&[1.0, 5.0])]);
+        let first = |leaves: Vec<Leaf>, expr: Expr, scratch: &mut Scratch| {
+            Object::new(leaves, &expr).first(&axis(), Interval::ALL, scratch).unwrap().0
+        };
+        let shared = first(lines(), Expr::Or(order(0, 1)), &mut scratch);
+        assert_eq!((shared.t, shared.leaf), (1.0, 0));
+        let mut swapped = lines();
+        (swapped[0].rank, swapped[1].rank) = (1, 0);
+        assert_eq!(first(swapped, Expr::Or(order(0, 1)), &mut scratch).leaf, 1);
+        let mut parts = vec![leaf(1), not(leaf(0))];
+        if turned {
+            parts.reverse();
+        }
+        let cut = first(lines(), Expr::And(parts), &mut scratch);
+        assert_eq!((cut.t, cut.leaf, cut.flipped, cut.normal), (3.0, 0, true, -glam::DVec3::X));
+    }
 }

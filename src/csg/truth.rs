@@ -2,6 +2,9 @@
 //! children are true and how many unknown. One change costs the stems ([`super::stem`]) that change with it, and going back
 //! to the outside costs what was changed, however many leaves there are.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
 use super::topset::Words;
 use super::tree::{Kind, Node, Tree, Up};
 
@@ -68,8 +71,8 @@ pub(super) struct State {
     words: Words,
     /// Leaves set since the outside.
     touched: Vec<u32>,
-    /// Nodes whose children changed, the lowest last.
-    waiting: Vec<u32>,
+    /// Nodes whose children changed, the lowest first.
+    waiting: BinaryHeap<Reverse<u32>>,
     /// Nodes that somebody waits for to be open again ([`State::watch`]).
     watched: Vec<bool>,
     /// Of those, which were open again since.
@@ -258,7 +261,7 @@ impl State {
     /// lead to it.
     fn put_all(&mut self, tree: &Tree, ups: &[Up], was: Truth, is: Truth) {
         self.count(ups, was, is);
-        while let Some(node) = self.waiting.pop() {
+        while let Some(Reverse(node)) = self.waiting.pop() {
             let node = node as usize;
             self.counts[node].queued = false;
             let (top, was, is) = self.renew(tree, node);
@@ -274,8 +277,7 @@ impl State {
             let count = &mut self.counts[up.node as usize];
             count.recount(*up, was, is);
             if !std::mem::replace(&mut count.queued, true) {
-                let at = self.waiting.partition_point(|n| up.node < *n);
-                self.waiting.insert(at, up.node);
+                self.waiting.push(Reverse(up.node));
             }
         }
     }

@@ -5,19 +5,38 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 use pss::csg::{Expr, Leaf};
-use pss::geom::{Aabb, Placement, Ray};
-use pss::solid::Solid;
+use pss::geom::{Aabb, Interval, Placement, Ray};
 use pss::solid::block::Block;
 use pss::solid::cylinder::Cylinder;
 use pss::solid::half_space::HalfSpace;
 use pss::solid::sphere::Sphere;
+use pss::solid::{Answer, Crossing, Scratch, Solid};
 
 use super::draws::Draws;
+
+/// A solid that does not say that it is of closed form: objects with it go the long way.
+#[derive(Debug)]
+struct Slow(Arc<dyn Solid>);
+
+impl Solid for Slow {
+    fn bounds(&self) -> Aabb {
+        self.0.bounds()
+    }
+
+    fn crossings(&self, ray: &Ray, range: Interval, s: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
+        self.0.crossings(ray, range, s, out)
+    }
+
+    fn normal(&self, ray: &Ray, crossing: &Crossing, scratch: &mut Scratch) -> DVec3 {
+        self.0.normal(ray, crossing, scratch)
+    }
+}
 
 /// A random leaf. `earlier` holds the coordinates already in play.
 pub fn leaf(draws: &mut Draws, earlier: &mut Vec<f64>, rank: u64) -> Leaf {
     let place = placement(draws, earlier);
-    let mut leaf = Leaf::new(solid(draws, earlier), place);
+    let solid = solid(draws, earlier);
+    let mut leaf = Leaf::new(if draws.chance(0.2) { Arc::new(Slow(solid)) } else { solid }, place);
     leaf.rank = rank;
     leaf.material = draws.chance(0.5).then(|| draws.below(4) as u32);
     leaf.cutter = draws.chance(0.3);
