@@ -2,6 +2,7 @@
 //! parts by name.
 
 mod clock;
+mod commands;
 mod rays;
 mod table;
 
@@ -9,11 +10,14 @@ use table::Row;
 
 type Part = (&'static str, fn(&mut Vec<Row>));
 
-const PARTS: [Part; 4] = [
+const PARTS: [Part; 7] = [
     ("two_leaves", rays::two_leaves),
     ("chain", rays::chain),
     ("lattice", rays::lattice),
     ("polytope", rays::polytope),
+    ("plates", commands::plates),
+    ("instances", commands::instances),
+    ("peers", commands::peers),
 ];
 
 fn main() {
