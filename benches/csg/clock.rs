@@ -28,7 +28,7 @@ pub fn median(values: impl Iterator<Item = f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 /// Runs of a command that are timed together: the system counts in hundredths of a second.
-const TOGETHER: usize = 5;
+const TOGETHER: usize = 3;
 
 /// Processor seconds, user and system, of a command run by a shell; `None` where it fails or is not there.
 pub fn command_seconds(command: &str) -> Option<f64> {

@@ -8,7 +8,7 @@ use std::process::Command;
 use crate::clock::{command_seconds, median};
 use crate::table::Row;
 
-const ROUNDS: usize = 5;
+const ROUNDS: usize = 3;
 
 fn folder() -> PathBuf {
     let folder = std::env::temp_dir().join("pss_csg_bench");
