@@ -27,8 +27,11 @@ fn is_near(have: &[(f64, f64)], want: &[(f64, f64)], error: f64) -> bool {
     have.len() == want.len() && have.iter().zip(want).all(|(a, b)| near(a.0, b.0) && near(a.1, b.1))
 }
 
-/// Spans on whole lines, from an origin along a direction.
-fn check(cases: &[(&str, &str, [f64; 3], [f64; 3], &[(f64, f64)])]) {
+/// A name, a shape, an origin, a direction, and the spans.
+type Case<'a> = (&'a str, &'a str, [f64; 3], [f64; 3], &'a [(f64, f64)]);
+
+/// Spans on whole lines.
+fn check(cases: &[Case]) {
     let mut scratch = Scratch::default();
     for (name, text, origin, dir, want) in cases {
         let shot = shot(&format!("draw {text}"));

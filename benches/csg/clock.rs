@@ -10,14 +10,18 @@ fn thread_seconds(start: Instant) -> f64 {
     nanoseconds.ok().and_then(first).map_or_else(|| start.elapsed().as_secs_f64(), |ns| 1e-9 * ns)
 }
 
-/// Median of the seconds that `work` needs, of `rounds`; once before to warm up.
+/// The system counts a thread's time in steps of some milliseconds: a round lasts for many of them.
+const ROUND: f64 = 0.15;
+
+/// Median of the seconds that `work` needs, of `rounds`; once before to warm up and to see how often it goes into a round.
 pub fn median_seconds(rounds: usize, mut work: impl FnMut()) -> f64 {
     let start = Instant::now();
     work();
+    let times = (ROUND / start.elapsed().as_secs_f64()).ceil().clamp(1.0, 1e6) as usize;
     median((0..rounds).map(|_| {
         let before = thread_seconds(start);
-        work();
-        thread_seconds(start) - before
+        (0..times).for_each(|_| work());
+        (thread_seconds(start) - before) / times as f64
     }))
 }
 

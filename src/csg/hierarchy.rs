@@ -193,7 +193,7 @@ impl Walk {
         self.probe = Probe::new(ray, range, hierarchy.condition);
         self.stack.clear();
         for (leaf, bounds) in &hierarchy.wide {
-            let met = self.probe.one(bounds);
+            let met = if *bounds == Aabb::ALL { Interval::ALL } else { self.probe.one(bounds) };
             if !met.intersect(range).is_empty() {
                 show(*leaf, met);
             }

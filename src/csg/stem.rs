@@ -102,7 +102,7 @@ impl Stem {
 
     /// What levels of a parity make of the stem where they are decided.
     fn says(&self, parity: u32) -> Truth {
-        Truth::known((self.lowest == Kind::Or) == (parity % 2 == 0))
+        Truth::known((self.lowest == Kind::Or) == parity.is_multiple_of(2))
     }
 
     /// Notes that a level is decided, or has children not known.

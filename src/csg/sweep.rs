@@ -51,8 +51,16 @@ impl<'a> Sweep<'a> {
         scratch: &'a mut solid::Scratch,
     ) -> Sweep<'a> {
         room.enter(core);
-        let Room { met, walk, queue, .. } = room;
-        walk.begin(&core.hierarchy, ray, range, |leaf, inside| show(met, queue, range, leaf, inside));
+        let Room { met, walk, queue, open, state, .. } = room;
+        walk.begin(&core.hierarchy, ray, range, |leaf, inside| {
+            if range.lo < inside.lo {
+                return show(met, queue, range, leaf, inside);
+            }
+            // Open from the beginning: nothing has to come before.
+            open.push(core.costs[leaf as usize], leaf, met.len() as u32);
+            state.set(&core.tree, leaf as usize, Truth::Open);
+            met.push(Met::new(leaf, inside));
+        });
         Sweep { core, ray, range, room, scratch, at: range.lo, inside: false }
     }
 

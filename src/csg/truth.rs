@@ -43,6 +43,8 @@ struct Count {
     value: Truth,
     /// Whether it waits to be looked at again.
     queued: bool,
+    /// What its stem has been told of it: whether it is decided, whether it has open children.
+    told: [bool; 2],
 }
 
 impl Count {
@@ -99,6 +101,9 @@ impl State {
             if top != i {
                 continue;
             }
+            // A stem of which nothing is decided has a value too.
+            let value = tree.stems.of(i).map_or(value, |(stem, _)| stem.value(&state.words));
+            state.counts[i].value = value;
             for up in tree.node_ups.of(i) {
                 state.counts[up.node as usize].yes += u32::from(value.negated(up.negated) == Truth::Yes);
             }
@@ -291,6 +296,11 @@ impl State {
                 let Count { yes, open, .. } = self.counts[node];
                 let Node { kind, arity } = tree.nodes[node];
                 let decided = if kind == Kind::Or { 0 < yes } else { yes + open < arity };
+                let told = [decided, 0 < open];
+                if std::mem::replace(&mut self.counts[node].told, told) == told {
+                    let value = self.counts[stem.top as usize].value;
+                    return (stem.top as usize, value, value);
+                }
                 stem.put(&mut self.words, place.level, decided, 0 < open);
                 (stem.top as usize, stem.value(&self.words))
             }
