@@ -95,6 +95,11 @@ fn law_89_91_ranges_clip_the_list_and_first_is_its_first_end() {
             same("clip", spans(case.object, &case.ray, range, &mut scratch), want.clone())?;
             same("any", case.object.any(&case.ray, range, &mut scratch), !want.is_empty())?;
             let first = case.object.first(&case.ray, range, &mut scratch);
+            // The short way and the long one agree in all: place, owner, normal, and what fills.
+            let mut list = Spans::new();
+            case.object.spans(&case.ray, range, &mut scratch, &mut list);
+            let end = list.first().and_then(|s| s.enter.map(|b| (b, true)).or(s.exit.map(|b| (b, false))));
+            same("first boundary", first, end)?;
             let first = first.map(|(b, entering)| ((b.t, b.leaf, b.flipped), entering));
             let entering = want.iter().flat_map(|s| [s[0].map(|e| (e, true)), s[1].map(|e| (e, false))]);
             same("first", first, entering.flatten().next())?;

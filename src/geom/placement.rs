@@ -72,7 +72,8 @@ impl Placement {
 
     /// A local normal as a unit normal of the world. Mirrors keep it outward.
     pub fn normal_to_world(&self, normal: DVec3) -> DVec3 {
-        if self.is_identity { normal } else { (self.normals * normal).normalize_or_zero() }
+        // Adding zero turns -0.0 into +0.0, as the product does: frames built on normals look at signs.
+        if self.is_identity { normal + DVec3::ZERO } else { (self.normals * normal).normalize_or_zero() }
     }
 
     /// The size of the translation, world length: part of the scale of rounding errors.
