@@ -170,7 +170,7 @@ fn doubling_a_shape_forty_times_is_refused_by_its_count() {
     }
     let errors = csg_support::scene::errors(&format!("{text}draw s40\n"));
     assert_eq!(errors[0].code, "E0703");
-    assert_eq!(errors[0].message, "this comes to more than 1000000 solids: 1099511627776");
+    assert_eq!(errors[0].message, "this comes to more than 4294967295 solids: 1099511627776");
 }
 
 #[test]
@@ -189,4 +189,30 @@ fn a_formula_in_the_language_is_what_it_says() {
     for (formula, twin) in twins {
         same(&format!("let r = 1.25\ndraw {formula}"), &format!("draw {twin}"));
     }
+}
+
+/// Below an offset every solid is moved on its own, so they are written out; instances are not.
+#[test]
+fn a_million_solids_may_stand_in_many_places_but_not_be_written_out() {
+    let row = |n: usize, step: usize| {
+        let places: Vec<String> = (0..n).map(|i| format!("[{}, 0, 0]", i * step)).collect();
+        format!("[{}]", places.join(", "))
+    };
+    let lets = format!(
+        "let a = sphere(r: 1).array({})
+         let b = a.array({})
+         let c = b.array({})\n",
+        row(100, 3),
+        row(100, 1000),
+        row(1000, 1_000_000),
+    );
+    let errors = csg_support::scene::errors(&format!("{lets}draw c.offset(0.1)\n"));
+    assert_eq!(errors[0].code, "E0703");
+    assert_eq!(errors[0].message, "this comes to more than 1000000 solids of their own: 10000000");
+    let shot = shot(&format!("{lets}draw c\n"));
+    let ray = Ray::new(DVec3::new(999_099_297.0, 5.0, 0.0), -DVec3::Y);
+    let spans = spans(&shot, &ray, &mut Scratch::default());
+    let ends: Vec<_> =
+        spans.iter().flat_map(|s| [s.enter, s.exit]).flatten().map(|b| (b.t, b.leaf)).collect();
+    assert_eq!(ends, [(4.0, 9_999_999), (6.0, 9_999_999)]);
 }

@@ -4,10 +4,11 @@
 //! dt |dir| max(|d.n_a|, |d.n_b|), is at most tau = 16 eps S + e_a + e_b. The first surface is reported as soon as no
 //! later crossing can change it.
 
+use super::object::Core;
 use super::owner::boundary;
 use super::spans::{Boundary, Span};
 use super::sweep::{Change, Sweep};
-use crate::geom::tolerance;
+use crate::geom::{Ray, tolerance};
 use glam::DVec3;
 
 /// Changes of an object with the clean-up applied, lazily.
@@ -34,11 +35,18 @@ pub(super) struct Bound {
     pub grain: f64,
 }
 
+/// The largest tau that two leaves of a tree can have on a ray near where it begins.
+pub(super) fn reach(core: &Core, ray: &Ray) -> f64 {
+    let Bound { shift, scale, .. } = core.bound;
+    // Two crossings, one for either face.
+    2.0 * shift + tolerance::cleanup(scale.max(ray.origin.length()))
+}
+
 /// A change with its face.
 #[derive(Clone, Copy)]
 pub(super) struct Face {
     pub change: Change,
-    /// The outward unit normal of the leaf that crosses, world frame.
+    /// The outward unit normal of the leaf that crosses, the object's frame.
     pub normal: DVec3,
     /// |dir . n|.
     pub slope: f64,
@@ -48,10 +56,7 @@ impl<'a> Cleaner<'a> {
     /// Starts the sweep.
     pub fn new(mut sweep: Sweep<'a>) -> Cleaner<'a> {
         let open = sweep.begin();
-        // Two crossings, one for either face.
-        let Bound { shift, scale, .. } = sweep.core.bound;
-        let origin = sweep.ray.origin.length();
-        let reach = 2.0 * shift + tolerance::cleanup(scale.max(origin));
+        let (origin, reach) = (sweep.ray.origin.length(), reach(sweep.core, sweep.ray));
         Cleaner { sweep, ahead: None, origin, reach, open }
     }
 
@@ -71,7 +76,8 @@ impl<'a> Cleaner<'a> {
         let leaves = [a, b].map(|c| self.sweep.room.met[c.met as usize].leaf as usize);
         // Of the two points the nearer: a ray and its reverse find the same thin, and none past the horizon.
         let scale = self.origin.max(ray.at(a.t).length().min(ray.at(b.t).length()));
-        let scale = scale.max(core.scales[leaves[0]]).max(core.scales[leaves[1]]);
+        let own = |i: usize, c: &Change| core.scale_at(leaves[i], &c.crossing);
+        let scale = scale.max(own(0, a)).max(own(1, b));
         let error = |i: usize, c: &Change| c.crossing.shift * core.tree.leaves()[leaves[i]].place.stretch;
         tolerance::cleanup(scale) + error(0, a) + error(1, b)
     }
@@ -150,8 +156,7 @@ impl<'a> Cleaner<'a> {
             };
             let Some(exit) = self.exit(limit) else { return true };
             let leaf = self.sweep.room.met[exit.change.met as usize].leaf;
-            let leaf = &self.sweep.core.tree.leaves()[leaf as usize];
-            let grain = leaf.solid.grain() * leaf.place.stretch;
+            let grain = self.sweep.core.tree.leaves()[leaf as usize].grain_at(&exit.change.crossing);
             let unresolved = (exit.change.t - begin) * length <= grain;
             let thin = enter.is_some_and(|enter| self.is_thin(&enter, &exit));
             if !unresolved && !thin {

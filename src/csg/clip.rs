@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::group::lent;
 use super::leaf::Leaf;
 use super::object::{Object, Scratch};
 use super::spans::{Boundary, Spans};
-use crate::geom::{Aabb, Interval, Ray};
+use crate::geom::{Aabb, Interval, Lean, Ray};
 use crate::solid::{self, Answer, Body, Crossing, Solid};
 
 /// What is clipped.
@@ -62,14 +63,6 @@ fn faces(object: &Object, ray: &Ray, scratch: &mut Scratch) -> impl Iterator<Ite
     spans.into_iter().flat_map(ends).flatten()
 }
 
-/// Asks with the scratch of a solid lent to an object.
-fn lent<T>(scratch: &mut solid::Scratch, ask: impl FnOnce(&mut Scratch) -> T) -> T {
-    let mut whole = Scratch::lent(std::mem::take(scratch));
-    let answer = ask(&mut whole);
-    *scratch = whole.solid;
-    answer
-}
-
 impl Solid for Clipped {
     fn body(&self) -> Body {
         Body::Sheet
@@ -89,7 +82,8 @@ impl Solid for Clipped {
         scratch: &mut solid::Scratch,
         out: &mut Vec<Crossing>,
     ) -> Answer {
-        lent(scratch, |scratch| {
+        let lean = scratch.lean;
+        lent(scratch, lean, |scratch| {
             let found = self.surface(ray, range, scratch);
             if found.is_empty() {
                 return;
@@ -103,11 +97,8 @@ impl Solid for Clipped {
 
     fn normal(&self, ray: &Ray, crossing: &Crossing, scratch: &mut solid::Scratch) -> DVec3 {
         match &self.of {
-            Clippee::Sheet(leaf) => {
-                let normal = leaf.solid.normal(&leaf.place.ray_to_local(ray), crossing, scratch);
-                leaf.place.normal_to_world(normal)
-            }
-            Clippee::Faces(object, leaf) => lent(scratch, |scratch| {
+            Clippee::Sheet(leaf) => leaf.normal(&leaf.place.ray_to_local(ray), crossing, scratch),
+            Clippee::Faces(object, leaf) => lent(scratch, Lean::of_world(), |scratch| {
                 let same = |(b, _): &(Boundary, bool)| b.leaf == *leaf && b.t == crossing.t;
                 let face = faces(object, ray, scratch).find(same);
                 let facing = if crossing.entering { -ray.dir } else { ray.dir };

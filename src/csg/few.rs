@@ -355,8 +355,7 @@ impl<'a> Look<'a> {
         let Hit { slot, crossing } = hits[at];
         let (core, t, leaf) = (self.core, crossing.t, self.room.few.leaves[slot as usize]);
         let own = &core.tree.leaves()[leaf as usize];
-        let normal = own.solid.normal(&own.place.ray_to_local(self.ray), &crossing, self.scratch);
-        let normal = own.place.normal_to_world(normal);
+        let normal = own.normal(&own.place.ray_to_local(self.ray), &crossing, self.scratch);
         let slope = self.ray.dir.dot(normal).abs();
         // No less than the lengths that the long way takes.
         let length = |v: DVec3| v.abs().element_sum();
@@ -376,6 +375,7 @@ impl<'a> Look<'a> {
         let filler = if own.material.is_some() { None } else { self.room.filler(core, within) };
         let flipped = crossing.entering != entering;
         let normal = if flipped { -normal } else { normal };
+        let leaf = core.first(leaf);
         Found::Answer((Boundary { t, leaf, crossing, normal, flipped, filler }, entering))
     }
 }
@@ -418,7 +418,7 @@ impl Room {
         state.reset(&core.tree);
         inside.clone().for_each(|leaf| state.set(&core.tree, leaf as usize, Truth::Yes));
         let fill = inside.filter(can).filter(|leaf| state.fills(&core.tree, *leaf as usize));
-        fill.max_by_key(|leaf| (leaves[*leaf as usize].rank, *leaf))
+        fill.max_by_key(|leaf| (leaves[*leaf as usize].rank, *leaf)).map(|leaf| core.first(leaf))
     }
 }
 

@@ -2,7 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::geom::{Aabb, Interval, Placement, Ray, tolerance};
+use glam::DVec3;
+
+use super::group::Group;
+use super::object::Object;
+use crate::geom::{Aabb, Interval, Lean, Placement, Ray, tolerance};
 use crate::solid::{Answer, Crossing, Scratch, Solid};
 
 /// A solid, placed, as an operand.
@@ -22,13 +26,24 @@ pub struct Leaf {
     pub cutter: bool,
     /// The source position of the call that made it: earlier calls own shared faces.
     pub rank: u64,
+    /// What the solid is, where it is an object itself ([`Leaf::instance`]).
+    pub group: Option<Arc<Group>>,
 }
+
+/// Who owns what: an explicit material before none, the base before a cutter, the earlier before the later.
+pub type Key = (bool, bool, u64);
 
 impl Leaf {
     /// Places a solid; name, material, cutter and rank are set by the caller.
     pub fn new(solid: Arc<dyn Solid>, place: Placement) -> Leaf {
         let bounds = solid.bounds().transformed(&place.world_from_local);
-        Leaf { solid, place, bounds, name: "".into(), material: None, cutter: false, rank: 0 }
+        Leaf { solid, place, bounds, name: "".into(), material: None, cutter: false, rank: 0, group: None }
+    }
+
+    /// An object in another frame. Names, materials, cutters and ranks are those of its own leaves.
+    pub fn instance(object: &Object, place: Placement) -> Leaf {
+        let group = Arc::new(Group(object.clone()));
+        Leaf { group: Some(group.clone()), ..Leaf::new(group, place) }
     }
 
     /// The largest length of the leaf that enters its rounding errors: its size and its distance from the world's
@@ -36,7 +51,8 @@ impl Leaf {
     pub fn scale(&self) -> f64 {
         let reach =
             if self.bounds.is_finite() && !self.bounds.is_empty() { self.bounds.farthest() } else { 0.0 };
-        reach.max(self.place.offset())
+        let within = self.group.as_ref().map_or(0.0, |group| group.0.core().bound.scale * self.place.stretch);
+        reach.max(within).max(self.place.offset())
     }
 
     /// The box grown by what rounding may move a crossing out of it. Box and crossings are rounded apart, each by as much
@@ -65,7 +81,7 @@ impl Leaf {
         out: &mut Vec<Crossing>,
     ) -> Answer {
         scratch.counts.leaf_queries += 1;
-        scratch.lean = self.place.lean;
+        scratch.lean = self.lean(scratch);
         let first = out.len();
         let answer = self.solid.crossings(local, range, scratch, out);
         if answer.is_sound(&out[first..], || self.solid.body()) {
@@ -76,13 +92,56 @@ impl Leaf {
         Answer::whole_line(false)
     }
 
-    /// Whether it shows on faces of leaves without a material that it fills.
+    /// How rays lean in its frame.
+    #[inline]
+    fn lean(&self, scratch: &Scratch) -> Lean {
+        scratch.frame.map_or(self.place.lean, |frame| frame.taken(&self.place.local_from_world.matrix3))
+    }
+
+    /// The outward unit normal at a crossing of a ray given in the leaf's frame, in the frame that its place is given in.
+    #[inline]
+    pub fn normal(&self, local: &Ray, crossing: &Crossing, scratch: &mut Scratch) -> DVec3 {
+        scratch.lean = self.lean(scratch);
+        self.place.normal_to_world(self.solid.normal(local, crossing, scratch))
+    }
+
+    /// What is not resolved about a crossing ([`Solid::grain`]), in the frame that the place is given in.
+    pub(super) fn grain_at(&self, crossing: &Crossing) -> f64 {
+        let own = self.group.as_ref().map_or_else(|| self.solid.grain(), |group| group.grain_at(crossing));
+        own * self.place.stretch
+    }
+
+    /// Asks the group that it is.
+    pub(super) fn ask_group<T>(
+        &self,
+        group: &Group,
+        scratch: &mut Scratch,
+        ask: impl FnOnce(&Group, &mut Scratch) -> T,
+    ) -> T {
+        scratch.lean = self.lean(scratch);
+        ask(group, scratch)
+    }
+
+    /// Whether it, or a leaf in it, shows on faces of leaves without a material that it fills.
     pub(super) fn can_fill(&self) -> bool {
-        self.material.is_some() && !self.cutter
+        match &self.group {
+            None => self.material.is_some() && !self.cutter,
+            Some(group) => group.0.core().can_fill,
+        }
     }
 
     /// Who owns a face that several leaves share: the smallest key.
-    pub fn key(&self) -> (bool, bool, u64) {
+    pub fn key(&self) -> Key {
         (self.material.is_none(), self.cutter, self.rank)
+    }
+
+    /// The smallest key of it and the leaves in it.
+    pub(super) fn least_key(&self) -> Key {
+        self.group.as_ref().map_or_else(|| self.key(), |group| group.0.core().least_key)
+    }
+
+    /// How many leaves it is, those in it counted.
+    pub(super) fn count(&self) -> u32 {
+        self.group.as_ref().map_or(1, |group| group.0.core().count)
     }
 }

@@ -5,6 +5,7 @@ mod cleanup;
 mod clip;
 mod expr;
 mod few;
+mod group;
 mod hierarchy;
 mod leaf;
 mod object;
@@ -22,6 +23,7 @@ mod truth;
 
 pub use clip::{Clipped, Clippee};
 pub use expr::Expr;
+pub use group::Group;
 pub use leaf::Leaf;
-pub use object::{Object, Scratch};
+pub use object::{Object, Part, Scratch};
 pub use spans::{Boundary, Span, Spans};

@@ -7,15 +7,17 @@ use super::cleanup::{Bound, Cleaner};
 use super::expr::Expr;
 use super::few::{All, Look};
 use super::hierarchy::{Hierarchy, worst_condition};
-use super::leaf::Leaf;
-use super::reach::reaches;
+use super::leaf::{Key, Leaf};
+use super::reach::{bounds_of_nodes, reaches};
 use super::room::Room;
 use super::spans::{Boundary, Spans};
 use super::sweep::Sweep;
 use super::tree::Tree;
 use super::truth::State;
-use crate::geom::{Interval, Ray};
-use crate::solid::{self, Cost};
+use glam::DAffine3;
+
+use crate::geom::{Aabb, Interval, Placement, Ray};
+use crate::solid::{self, Cost, Crossing};
 
 /// What queries of objects need beside their arguments, one for each thread.
 #[derive(Debug, Default)]
@@ -23,13 +25,6 @@ pub struct Scratch {
     /// What solids need; the counts of work.
     pub solid: solid::Scratch,
     pub(super) room: Room,
-}
-
-impl Scratch {
-    /// With what a solid lends.
-    pub(super) fn lent(solid: solid::Scratch) -> Scratch {
-        Scratch { solid, room: Room::default() }
-    }
 }
 
 /// What all sweeps of an object read.
@@ -47,6 +42,16 @@ pub(super) struct Core {
     /// For each leaf [`Leaf::scale`].
     pub scales: Vec<f64>,
     pub bound: Bound,
+    /// A box outside of which nothing is inside; unbounded where there is none.
+    pub bounds: Aabb,
+    /// How many leaves there are, those in groups counted; past 2^32 the count stays there.
+    pub count: u32,
+    /// For each leaf how many come before it, counted so; nothing where no leaf is a group.
+    firsts: Vec<u32>,
+    /// The smallest key of all leaves.
+    pub least_key: Key,
+    /// Whether any leaf shows on faces of leaves without a material.
+    pub can_fill: bool,
 }
 
 impl Core {
@@ -61,13 +66,91 @@ impl Core {
         let costs: Vec<Cost> = leaves.iter().map(|l| l.solid.cost()).collect();
         let scales = leaves.iter().map(Leaf::scale).collect();
         let condition = worst_condition(leaves.iter().map(|l| l.place.condition));
+        let (count, firsts) = numbered(&leaves);
+        let least_key = leaves.iter().map(Leaf::least_key).min().unwrap_or_default();
+        let can_fill = leaves.iter().any(Leaf::can_fill);
+        let grown: Vec<Aabb> = leaves.iter().map(Leaf::grown).collect();
         let tree = Tree::new(leaves, expr);
+        let bounds = bounds_of_nodes(&tree, &grown).last().copied().unwrap_or_default();
+        let bounds = if bounds.is_finite() { bounds } else { Aabb::ALL };
         let reaches = reaches(&tree);
         let hierarchy = Hierarchy::new(&reaches, condition);
         let outside = State::outside(&tree);
         let few = All::new(&tree, &costs, &reaches, &outside);
         let id = NEXT.fetch_add(1, Ordering::Relaxed);
-        Core { id, tree, hierarchy, outside, costs, few, scales, bound }
+        Core {
+            id,
+            tree,
+            hierarchy,
+            outside,
+            costs,
+            few,
+            scales,
+            bound,
+            bounds,
+            count,
+            firsts,
+            least_key,
+            can_fill,
+        }
+    }
+
+    /// The index by which boundaries name the first leaf of a leaf.
+    #[inline]
+    pub fn first(&self, leaf: u32) -> u32 {
+        self.firsts.get(leaf as usize).copied().unwrap_or(leaf)
+    }
+
+    /// The scale of a leaf, of a group that of its own leaf that crosses.
+    #[inline]
+    pub fn scale_at(&self, leaf: usize, crossing: &Crossing) -> f64 {
+        let Leaf { group, place, .. } = &self.tree.leaves()[leaf];
+        let Some(group) = group else { return self.scales[leaf] };
+        place.offset().max(group.0.core().scales[crossing.part as usize] * place.stretch)
+    }
+
+    /// The leaf that a boundary's index is, or is in.
+    fn holder(&self, index: u32) -> u32 {
+        if self.firsts.is_empty() {
+            return index;
+        }
+        self.firsts.partition_point(|first| *first <= index) as u32 - 1
+    }
+}
+
+/// How many leaves there are in all, and for each how many come before it, if that is not how it stands.
+fn numbered(leaves: &[Leaf]) -> (u32, Vec<u32>) {
+    if leaves.iter().all(|leaf| leaf.group.is_none()) {
+        return (leaves.len() as u32, Vec::new());
+    }
+    let mut count = 0u32;
+    let first = |leaf: &Leaf| {
+        let first = count;
+        count = count.saturating_add(leaf.count());
+        first
+    };
+    let firsts = leaves.iter().map(first).collect();
+    (count, firsts)
+}
+
+/// A leaf as a boundary names it, perhaps of an object within the object.
+#[derive(Clone, Copy, Debug)]
+pub struct Part<'a> {
+    /// The leaf.
+    pub leaf: &'a Leaf,
+    /// From the world to its frame.
+    pub local_from_world: DAffine3,
+    /// A bound on how much a length of its frame can grow on the way to the world.
+    pub stretch: f64,
+    /// [`Leaf::scale`] of what stands in the world.
+    pub scale: f64,
+}
+
+impl<'a> Part<'a> {
+    /// A leaf that stands in the world.
+    pub fn of(leaf: &'a Leaf) -> Part<'a> {
+        let Placement { local_from_world, stretch, .. } = leaf.place;
+        Part { leaf, local_from_world, stretch, scale: leaf.scale() }
     }
 }
 
@@ -86,6 +169,27 @@ impl Object {
     /// The leaves.
     pub fn leaves(&self) -> &[Leaf] {
         self.core.tree.leaves()
+    }
+
+    pub(super) fn core(&self) -> &Core {
+        &self.core
+    }
+
+    /// The leaf that a boundary names.
+    pub fn part(&self, index: u32) -> Part<'_> {
+        let mut core = &*self.core;
+        let mut holder = core.holder(index);
+        let mut part = Part::of(&core.tree.leaves()[holder as usize]);
+        let mut index = index - core.first(holder);
+        while let Some(group) = &part.leaf.group {
+            core = group.0.core();
+            holder = core.holder(index);
+            index -= core.first(holder);
+            let leaf = &core.tree.leaves()[holder as usize];
+            let local_from_world = leaf.place.local_from_world * part.local_from_world;
+            part = Part { leaf, local_from_world, stretch: part.stretch * leaf.place.stretch, ..part };
+        }
+        part
     }
 
     fn cleaner<'a>(&'a self, ray: &'a Ray, range: Interval, scratch: &'a mut Scratch) -> Cleaner<'a> {

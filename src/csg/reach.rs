@@ -18,7 +18,7 @@ pub(super) fn reaches(tree: &Tree) -> Vec<Aabb> {
 }
 
 /// For each node a box outside which it is false; all of space where it may be true anywhere.
-fn bounds_of_nodes(tree: &Tree, grown: &[Aabb]) -> Vec<Aabb> {
+pub(super) fn bounds_of_nodes(tree: &Tree, grown: &[Aabb]) -> Vec<Aabb> {
     let start = |kind| if kind == Kind::And { Aabb::ALL } else { Aabb::EMPTY };
     let mut bounds: Vec<Aabb> = tree.nodes.iter().map(|n| start(n.kind)).collect();
     let add = |bounds: &mut [Aabb], up: &super::tree::Up, child: Aabb| {

@@ -222,7 +222,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// The ray in the frame of a leaf.
-    fn local(&mut self, met: usize) -> Ray {
+    pub fn local(&mut self, met: usize) -> Ray {
         let m = &mut self.room.met[met];
         let place = &self.core.tree.leaves()[m.leaf as usize].place;
         *m.local.get_or_insert_with(|| place.ray_to_local(self.ray))
@@ -268,11 +268,11 @@ impl<'a> Sweep<'a> {
         self.room.here.differs(&self.room.before, &self.core.tree, leaf)
     }
 
-    /// The outward unit normal of a leaf, world frame.
+    /// The outward unit normal of a leaf, the object's frame.
     pub fn leaf_normal(&mut self, met: u32, crossing: &Crossing) -> DVec3 {
         let local = self.local(met as usize);
         let leaf = &self.core.tree.leaves()[self.room.met[met as usize].leaf as usize];
-        leaf.place.normal_to_world(leaf.solid.normal(&local, crossing, self.scratch))
+        leaf.normal(&local, crossing, self.scratch)
     }
 }
 

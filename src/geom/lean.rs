@@ -23,7 +23,12 @@ impl Lean {
 
     /// The world's, in a local frame.
     pub fn local(local_from_world: &DMat3) -> Lean {
-        Lean(*local_from_world * Lean::of_world().0)
+        Lean::of_world().taken(local_from_world)
+    }
+
+    /// The same in another frame.
+    pub fn taken(self, other_from_own: &DMat3) -> Lean {
+        Lean(*other_from_own * self.0)
     }
 
     /// Along an axis of the frame: 0 to 2.

@@ -27,6 +27,11 @@ pub fn cleanup(scale: f64) -> f64 {
     CLEANUP * EPS * scale
 }
 
+/// How far past its first crossing an object within an object goes on, in thicknesses of its own clean-up: so far that
+/// what is around it, of up to this many times its size, need not ask again to see that nothing is near. It costs next to
+/// nothing: near things are rare.
+pub const AHEAD: f64 = (1u64 << 20) as f64;
+
 /// What roundings can make of a short expression whose terms are up to `scale`.
 pub fn noise(scale: f64) -> f64 {
     NOISE * EPS * scale

@@ -3,6 +3,7 @@
 use glam::DAffine3;
 
 use super::bounding::bounded_by;
+use super::groups::address;
 use super::lower::Lowering;
 use crate::deep;
 use crate::diag::Diagnostic;
@@ -10,10 +11,16 @@ use crate::geom::Aabb;
 use crate::scene::{BooleanOp, Operand, Shape, ShapeKind};
 
 impl Lowering<'_, '_> {
-    /// A box around the image of a shape: tight for leaves and unions; for the other operators that of what they are
+    /// A box around the image of a shape: tight for leaves and unions but those of a million solids in many places; for the other operators that of what they are
     /// cut from. Unbounded where the shape is.
     pub(super) fn extent(&mut self, shape: &Shape, to_from: &DAffine3) -> Result<Aabb, Diagnostic> {
-        deep::step(|| self.extent_here(shape, to_from))
+        if !self.groups.is_vast(shape) {
+            return deep::step(|| self.extent_here(shape, to_from));
+        }
+        let known = self.groups.extents.get(&address(shape)).copied();
+        let own = known.map_or_else(|| deep::step(|| self.extent_here(shape, &DAffine3::IDENTITY)), Ok)?;
+        self.groups.extents.insert(address(shape), own);
+        Ok(if own.is_finite() { own.transformed(to_from) } else { own })
     }
 
     fn extent_here(&mut self, shape: &Shape, to_from: &DAffine3) -> Result<Aabb, Diagnostic> {

@@ -1,6 +1,7 @@
 //! Shapes to leaves and one set expression over them: transforms pushed down, materials handed out, operands checked
 //! to have an inside.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
@@ -8,12 +9,13 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::bounding::bounded_by;
 use super::build::{Builder, Built, exact};
 use super::edits::{Change, Edit, Edits, Stage, edits};
+use super::groups::Groups;
+use super::instances::Repeat;
 use super::limits;
 use super::outline::Outline;
 use super::samples::{Sampling, sample};
 use crate::cloud::Cloud;
 use crate::csg::{Clipped, Clippee, Expr, Leaf, Object};
-use crate::deep;
 use crate::diag::Diagnostic;
 use crate::geom::{Aabb, Placement};
 use crate::scene::{BooleanOp, Call, FitTo, MaterialId, Operand, Shape, ShapeKind, Value};
@@ -31,30 +33,34 @@ pub(super) struct Drawn {
 
 /// Leaves gathered from shapes.
 pub(super) struct Lowering<'b, 'o> {
-    builder: &'b mut Builder<'o>,
-    measure_all: bool,
+    pub builder: &'b mut Builder<'o>,
+    pub measure_all: bool,
     /// Leaves that expressions refer to.
     pub leaves: Vec<Leaf>,
     /// Sheets drawn.
     pub sheets: Vec<Leaf>,
     /// Where the leaves, and what cuts them, were written.
     pub outline: Outline,
+    /// Shapes that become one leaf each; none where every leaf is wanted as it was written.
+    pub groups: Groups,
+    /// Expressions of shapes that may stand twice in one place.
+    pub repeats: HashMap<Repeat, Arc<Expr>>,
 }
 
 /// What a node inherits from above.
 #[derive(Clone, Copy)]
-struct Context<'a> {
-    world_from_local: DAffine3,
-    material: Option<MaterialId>,
+pub(super) struct Context<'a> {
+    pub world_from_local: DAffine3,
+    pub material: Option<MaterialId>,
     /// What cutters wear that have no material.
-    cut: Option<MaterialId>,
-    cutter: bool,
+    pub cut: Option<MaterialId>,
+    pub cutter: bool,
     /// Whether an odd number of complements stands above: what grows the whole shrinks this.
-    turned: bool,
+    pub turned: bool,
     /// Whether an operator above asks for an inside, with its sign and the place of the operand.
-    wanted: Option<(&'static str, Span)>,
+    pub wanted: Option<(&'static str, Span)>,
     /// What the methods above change about the leaves, the innermost first.
-    edits: Option<&'a Edits<'a>>,
+    pub edits: Option<&'a Edits<'a>>,
 }
 
 const TOP: Context = Context {
@@ -68,7 +74,7 @@ const TOP: Context = Context {
 };
 
 /// A lowered shape.
-enum Lowered {
+pub(super) enum Lowered {
     Solid(Expr),
     Sheets(Vec<Leaf>),
 }
@@ -76,12 +82,20 @@ enum Lowered {
 impl<'b, 'o> Lowering<'b, 'o> {
     /// Nothing gathered yet.
     pub fn new(builder: &'b mut Builder<'o>, measure_all: bool) -> Lowering<'b, 'o> {
-        Lowering { builder, measure_all, leaves: Vec::new(), sheets: Vec::new(), outline: Outline::default() }
+        Lowering {
+            builder,
+            measure_all,
+            leaves: Vec::new(),
+            sheets: Vec::new(),
+            outline: Outline::default(),
+            groups: Groups::default(),
+            repeats: HashMap::new(),
+        }
     }
 
     /// Lowers what is drawn.
     pub fn draw(&mut self, shape: &Shape) -> Result<Drawn, Diagnostic> {
-        limits::check_count(shape)?;
+        limits::check_count(shape, &self.groups)?;
         let bounds = self.extent(shape, &DAffine3::IDENTITY)?;
         let solid = match self.lower(shape, TOP)? {
             Lowered::Solid(expr) => Some(expr),
@@ -93,11 +107,13 @@ impl<'b, 'o> Lowering<'b, 'o> {
         Ok(Drawn { solid, bounds })
     }
 
-    fn lower(&mut self, shape: &Shape, context: Context) -> Result<Lowered, Diagnostic> {
-        deep::step(|| self.lower_here(shape, context))
+    pub(super) fn push(&mut self, leaf: Leaf, at: Span) -> Expr {
+        self.leaves.push(leaf);
+        self.outline.calls.push(at);
+        Expr::Leaf(self.leaves.len() as u32 - 1)
     }
 
-    fn lower_here(&mut self, shape: &Shape, context: Context) -> Result<Lowered, Diagnostic> {
+    pub(super) fn lower_here(&mut self, shape: &Shape, context: Context) -> Result<Lowered, Diagnostic> {
         match &shape.0.kind {
             ShapeKind::Leaf { call, name } => self.leaf(shape, call, name, context),
             ShapeKind::Transform { world_from_local, child } => {
@@ -175,11 +191,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
         context: Context,
     ) -> Result<Lowered, Diagnostic> {
         let solid = self.solid(shape, name, context)?;
-        let place = Placement::new(context.world_from_local).ok_or_else(|| {
-            Diagnostic::error("E0505", "a transform leaves nothing of this shape, or too little to invert")
-                .at(call.at, "")
-                .help("no factor of a `.scale` may be zero or a million million times smaller than another")
-        })?;
+        let place = placed(context.world_from_local, call.at)?;
         let mut leaf = Leaf::new(solid.clone(), place);
         leaf.name = name.into();
         leaf.material = context.material.map(|m| m.0);
@@ -188,9 +200,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
         if solid.body() == Body::Sheet {
             return Ok(Lowered::Sheets(vec![leaf]));
         }
-        self.leaves.push(leaf);
-        self.outline.calls.push(call.at);
-        let own = Expr::Leaf(self.leaves.len() as u32 - 1);
+        let own = self.push(leaf, call.at);
         let Some((by, bounding)) = bounded_by(call) else { return Ok(Lowered::Solid(own)) };
         let at = call.place(by);
         match self.lower(bounding, Context { wanted: Some((by, at)), edits: None, ..context })? {
@@ -331,6 +341,8 @@ impl<'b, 'o> Lowering<'b, 'o> {
             return Err(error.at(call.place("noise"), "").help("write zero or more, such as `noise: 0.1`"));
         }
         let mut own = Lowering::new(self.builder, true);
+        own.groups = Groups::of(std::iter::once(solid), true);
+        limits::check_count(solid, &own.groups)?;
         let bounds = own.extent(solid, &DAffine3::IDENTITY)?;
         let Lowered::Solid(expr) = own.lower(solid, TOP)? else {
             return Err(Diagnostic::error("E0301", "only a solid can be sampled").at(at, "a Sheet"));
@@ -367,6 +379,14 @@ impl<'b, 'o> Lowering<'b, 'o> {
         let bottom = DVec3::new(bounds.center().x, bounds.center().y, bounds.min.z);
         Ok(DAffine3 { matrix3: DMat3::from_diagonal(DVec3::splat(scale)), translation: *at - scale * bottom })
     }
+}
+
+pub(super) fn placed(world_from_local: DAffine3, at: Span) -> Result<Placement, Diagnostic> {
+    Placement::new(world_from_local).ok_or_else(|| {
+        Diagnostic::error("E0505", "a transform leaves nothing of this shape, or too little to invert")
+            .at(at, "")
+            .help("no factor of a `.scale` may be zero or a million million times smaller than another")
+    })
 }
 
 fn combined(op: BooleanOp, mut exprs: Vec<Expr>) -> Expr {

@@ -1,8 +1,8 @@
 //! A scene made ready to trace: what is drawn is built, placed and bounded; what nothing draws is never touched.
-//!
-//! [`build`] makes solids of calls, [`assets`] those of files, [`edits`] and [`offset`] what methods make of them, [`fitness`] doubts
-//! them, [`samples`] takes samples of solids, [`files`] says what may be read, [`lower`]
-//! turns shapes into leaves and one set expression. Text and pixels are left to others.
+//! [`build`] makes solids of calls, [`assets`] those of files, [`edits`] and [`offset`] what methods make of them,
+//! [`fitness`] doubts them, [`samples`] takes samples of solids, [`files`] says what may be read, [`lower`] turns shapes into
+//! leaves and one set expression, [`groups`] and [`instances`] see to it that what stands in several places is built
+//! once. Text and pixels are left to others.
 
 mod assets;
 mod bounding;
@@ -11,6 +11,8 @@ mod edits;
 mod extent;
 mod files;
 mod fitness;
+mod groups;
+mod instances;
 mod limits;
 mod lower;
 mod offset;
@@ -30,6 +32,7 @@ use crate::shot::{Camera, Light, Material, Settings, Shot, World, camera, light,
 use crate::solid::{Counts, table};
 
 use build::Builder;
+use groups::Groups;
 use lower::Lowering;
 pub use outline::{Cutting, Outline, Part, Piece};
 
@@ -177,6 +180,7 @@ fn world(
     bare: usize,
 ) -> Result<(World, Outline), Vec<Diagnostic>> {
     let mut lowering = Lowering::new(builder, measure_all);
+    lowering.groups = Groups::of(scene.draws.iter().map(|draw| &draw.shape), measure_all);
     let mut errors = Vec::new();
     let mut solids = Vec::new();
     let mut places = Vec::new();
@@ -199,7 +203,9 @@ fn world(
     if !errors.is_empty() {
         return Err(errors);
     }
-    let Lowering { leaves, sheets, mut outline, .. } = lowering;
+    let Lowering { leaves, sheets, mut outline, repeats, .. } = lowering;
+    // What turned out to stand once is not shared.
+    drop(repeats);
     let mut whole = Expr::Or(solids);
     let world = World::new(Object::new(leaves, &whole), sheets, bounds, bare as u32);
     if let Expr::Or(solids) = &mut whole {

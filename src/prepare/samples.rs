@@ -123,7 +123,7 @@ fn crossings(object: &Object, ray: &Ray, materials: &[Material], scratch: &mut S
     object.spans(ray, Interval::ALL, scratch, &mut spans);
     let ends = spans.iter().flat_map(|s| [s.enter, s.exit]).flatten();
     let color = |b: &Boundary| {
-        let leaf = |i: u32| object.leaves()[i as usize].material;
+        let leaf = |i: u32| object.part(i).leaf.material;
         let material = leaf(b.leaf).or_else(|| leaf(b.filler?));
         material.and_then(|m| materials.get(m as usize)).copied().unwrap_or_default().albedo(None)
     };

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::csg::{self, Boundary, Leaf, Object, Spans};
+use crate::csg::{self, Boundary, Leaf, Object, Part, Spans};
 use crate::geom::{Aabb, Interval, Ray, tolerance};
 
 /// Everything drawn.
@@ -126,8 +126,7 @@ impl World {
             let rest = Interval::new(lo, range.hi);
             let answer = leaf.crossings(&local, rest, &mut scratch.solid, &mut found);
             for crossing in found.into_iter().filter(|c| lo < c.t && c.t <= range.hi) {
-                let normal = leaf.solid.normal(&local, &crossing, &mut scratch.solid);
-                let normal = leaf.place.normal_to_world(normal);
+                let normal = leaf.normal(&local, &crossing, &mut scratch.solid);
                 let t = crossing.t;
                 let boundary =
                     Boundary { t, leaf: index as u32, crossing, normal, flipped: false, filler: None };
@@ -145,19 +144,19 @@ impl World {
         last
     }
 
-    fn leaf(&self, hit: &Hit) -> &Leaf {
-        let leaves = if hit.sheet { &self.sheets } else { self.solids.leaves() };
-        &leaves[hit.boundary.leaf as usize]
+    fn part(&self, hit: &Hit) -> Part<'_> {
+        let index = hit.boundary.leaf;
+        if hit.sheet { Part::of(&self.sheets[index as usize]) } else { self.solids.part(index) }
     }
 
     /// The surface of a hit.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        let leaf = self.leaf(hit);
+        let Part { leaf, stretch, scale, .. } = self.part(hit);
         let boundary = &hit.boundary;
         let point = ray.at(boundary.t);
-        let filler = boundary.filler.and_then(|f| self.solids.leaves()[f as usize].material);
-        let scale = point.length().max(ray.origin.length()).max(leaf.scale());
-        let bound = boundary.crossing.shift.max(leaf.solid.shift_bound()) * leaf.place.stretch;
+        let filler = boundary.filler.and_then(|f| self.solids.part(f).leaf.material);
+        let scale = point.length().max(ray.origin.length()).max(scale);
+        let bound = boundary.crossing.shift.max(leaf.solid.shift_bound()) * stretch;
         // A crossing that is known to lie within `err` lies within this along the normal.
         let error = bound.max(boundary.crossing.err * ray.dir.dot(boundary.normal).abs());
         Surface {
@@ -171,17 +170,17 @@ impl World {
 
     /// The linear colour that the leaf of a hit itself has there.
     pub fn color(&self, hit: &Hit, point: DVec3, scratch: &mut csg::Scratch) -> Option<[f32; 3]> {
-        let leaf = self.leaf(hit);
-        leaf.solid.color(leaf.place.local_from_world.transform_point3(point), &mut scratch.solid)
+        let Part { leaf, local_from_world, .. } = self.part(hit);
+        leaf.solid.color(local_from_world.transform_point3(point), &mut scratch.solid)
     }
 
     /// The name of a boundary's leaf, as the scene calls it.
     pub fn leaf_name(&self, hit: &Hit) -> &str {
-        &self.leaf(hit).name
+        &self.part(hit).leaf.name
     }
 
     /// The name of the leaf of a span's boundary.
     pub fn name(&self, boundary: &Boundary) -> &str {
-        &self.solids.leaves()[boundary.leaf as usize].name
+        &self.solids.part(boundary.leaf).leaf.name
     }
 }

@@ -26,6 +26,7 @@ pub mod table;
 pub mod torus;
 pub mod tube;
 
+use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -133,6 +134,10 @@ pub struct Scratch {
     pub counts: Counts,
     /// How the ray leans, in the frame of the solid that is asked.
     pub lean: Lean,
+    /// How the ray leans in the frame that the solid's place is given in, where that is not the world's.
+    pub frame: Option<Lean>,
+    /// Room of a solid that is made of others, whatever it keeps; of each depth of nesting within that of the one above.
+    pub inner: Option<Box<dyn Any + Send>>,
     /// What is known of the line being asked about, for each point set surface.
     pub lines: Vec<point_set::LineScratch>,
     /// Room for asking a point set surface about points.
