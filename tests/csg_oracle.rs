@@ -63,9 +63,9 @@ fn same<T: PartialEq + std::fmt::Debug>(what: &str, have: T, want: T) -> Result<
     if have == want { Ok(()) } else { Err(format!("{what}\n have {have:?}\n want {want:?}")) }
 }
 
-/// FEATURES 88: lazy equals brute force, shape, owner and side.
+/// FEATURES 88 and B18: lazy equals brute force, shape, owner and side; and so does culling equal asking everything.
 #[test]
-fn law_88_spans_are_those_of_brute_force() {
+fn b18_law_88_spans_are_those_of_brute_force() {
     let mut scratch = Scratch::default();
     on_all(TREES, |_, case| {
         let want = Oracle::new(case.leaves, case.expr, &case.ray).spans();

@@ -125,7 +125,7 @@ fn sponge(levels: u32) -> String {
 }
 
 #[test]
-fn cases_47_to_57_known_volumes_and_nests() {
+fn cases_47_to_58_known_volumes_and_nests() {
     let ball = 4.0 / 3.0 * PI;
     let [x, y, z] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(|[x, y, z]| {
         format!(
@@ -169,6 +169,11 @@ fn cases_47_to_57_known_volumes_and_nests() {
             left = run;
         }
     }
+    // A ball less its six caps, less three bores: each alone, pairs counted twice, all three thrice.
+    let bores = [&x, &y, &z].map(|c| c.replace("r: 1", "r: 0.5")).join(", ");
+    let rounded = format!("(box(size: 2) & sphere(r: 1.25) & !union([{bores}]))");
+    let caps = 6.0 * PI * 0.25f64.powi(2) * (3.0 * 1.25 - 0.25) / 3.0;
+    let bores = 6.0 * PI * 0.25 - 16.0 * 0.125 + 8.0 * (2.0 - 2f64.sqrt()) * 0.125;
     check(&[
         ("47 lens", "(sphere(r: 1) & sphere(r: 1, at: [1, 0, 0]))", 1.5, 5.0 * PI / 12.0),
         ("48 two cylinders", &format!("({x} & {z})"), 1.5, 16.0 / 3.0),
@@ -190,6 +195,7 @@ fn cases_47_to_57_known_volumes_and_nests() {
         ),
         ("56 gear without a smaller one", &gear, 1.5, star * (1.0 - 0.81)),
         ("57 spiral of touching cubes", &format!("union([{}])", spiral.trim_end_matches(", ")), 1.5, 0.12),
+        ("58 rounded cube, bored", &rounded, 1.5, ball * 1.25f64.powi(3) - caps - bores),
     ]);
 }
 

@@ -14,6 +14,7 @@ mod owner;
 mod queue;
 mod reach;
 mod room;
+mod slots;
 mod spans;
 mod stem;
 mod sweep;

@@ -5,11 +5,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::cleanup::{Bound, Cleaner};
 use super::expr::Expr;
-use super::few::{All, Look};
+use super::few::Look;
 use super::hierarchy::{Hierarchy, worst_condition};
 use super::leaf::{Key, Leaf};
 use super::reach::{bounds_of_nodes, reaches};
 use super::room::Room;
+use super::slots::All;
 use super::spans::{Boundary, Spans};
 use super::sweep::Sweep;
 use super::tree::Tree;

@@ -1,0 +1,245 @@
+//! What a ray meets while it meets little: its leaves in slots, all their crossings in order, and tables of truth for
+//! leaves that are met together again and again.
+
+use super::object::Core;
+use super::room::Room;
+use super::tree::Tree;
+use super::truth::{State, Truth};
+use crate::geom::Aabb;
+use crate::solid::{Cost, Crossing};
+
+/// Of more leaves than this a first surface makes most needless, which the long way finds out.
+const FEW: usize = 16;
+/// Closed forms are convex: a line crosses each at most twice.
+const MOST: usize = 2 * FEW;
+/// A table of all states of so many leaves is a word.
+const TABLED: usize = 6;
+
+/// The leaves that a ray meets, as they came; places past the last hold [`NO_LEAF`].
+type Leaves = [u32; FEW];
+const NO_LEAF: u32 = u32::MAX;
+
+/// Truth of an object's root for each state of some leaves, all others outside.
+#[derive(Clone, Copy, Debug)]
+struct Table {
+    tree: u64,
+    leaves: Leaves,
+    /// Bit i: whether it is inside where the leaves are that have a bit in i; made when these leaves are met again.
+    root: Option<u64>,
+}
+
+/// All leaves of an object that has few, all of closed form: their boxes would spare less than they cost.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct All {
+    leaves: Leaves,
+    count: usize,
+    pub root: u64,
+}
+
+impl All {
+    /// `None` where there are too many, or others.
+    pub fn new(tree: &Tree, costs: &[Cost], reaches: &[Aabb], outside: &State) -> Option<All> {
+        let matter = || (0u32..).zip(reaches).filter(|(_, b)| !b.is_empty()).map(|(leaf, _)| leaf);
+        if matter().nth(TABLED).is_some() || matter().any(|leaf| costs[leaf as usize] != Cost::Closed) {
+            return None;
+        }
+        let (leaves, count) =
+            (std::array::from_fn(|slot| matter().nth(slot).unwrap_or(NO_LEAF)), matter().count());
+        let root = truths(tree, &leaves[..count], &mut outside.clone());
+        Some(All { leaves, count, root })
+    }
+
+    /// They, by their indices.
+    pub fn leaves(&self) -> &[u32] {
+        &self.leaves[..self.count]
+    }
+}
+
+/// Truth of the root for all states of some leaves, in an order in which one leaf changes at a time (Gray's).
+fn truths(tree: &Tree, leaves: &[u32], state: &mut State) -> u64 {
+    state.reset(tree);
+    let mut root = 0;
+    for step in 0..1u64 << leaves.len() {
+        let mask = step ^ step >> 1;
+        if 0 < step {
+            let slot = step.trailing_zeros();
+            state.set(tree, leaves[slot as usize] as usize, Truth::known(mask >> slot & 1 == 1));
+        }
+        root |= u64::from(state.root() == Truth::Yes) << mask;
+    }
+    state.reset(tree);
+    root
+}
+
+/// Neighbouring rays mostly meet the same leaves.
+const TABLES: usize = 256;
+/// An odd number without a pattern (the golden ratio's digits, Knuth's multiplicative hashing).
+const MIX: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// A crossing of one of the leaves met.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hit {
+    /// Of the leaves met, which.
+    pub slot: u32,
+    pub crossing: Crossing,
+}
+
+/// Where truth changes: at crossings that all have one t.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turn {
+    /// Their places in the order, half-open.
+    pub from: usize,
+    pub to: usize,
+    /// The leaves that the ray is inside of before and after.
+    pub before: u64,
+    pub after: u64,
+    /// Whether the ray goes into the object.
+    pub entering: bool,
+}
+
+/// Room for the short way, lent by a thread.
+#[derive(Debug)]
+pub(super) struct Few {
+    pub leaves: Leaves,
+    pub count: usize,
+    /// Of the object and these leaves.
+    hash: u64,
+    /// Leaves in sight and not asked yet.
+    pub shown: Vec<u32>,
+    /// Bit i: whether the line comes from inside the leaf in slot i.
+    pub inside: u64,
+    /// The last answer of a leaf.
+    pub fresh: Vec<Crossing>,
+    /// Ascending.
+    hits: [Hit; MOST],
+    pub hit_count: usize,
+    tables: [Table; TABLES],
+}
+
+impl Default for Few {
+    fn default() -> Few {
+        let no_table = Table { tree: 0, leaves: [NO_LEAF; FEW], root: None };
+        let no_hit = Hit { slot: 0, crossing: Crossing::exact(0.0, false, 0) };
+        let (hits, tables) = ([no_hit; MOST], [no_table; TABLES]);
+        Few {
+            leaves: [NO_LEAF; FEW],
+            count: 0,
+            hash: 0,
+            shown: Vec::new(),
+            inside: 0,
+            fresh: Vec::new(),
+            hits,
+            hit_count: 0,
+            tables,
+        }
+    }
+}
+
+impl Room {
+    /// Truth of the root for all states of the leaves met, if they have been met before.
+    #[inline]
+    pub fn table(&mut self, core: &Core) -> Option<u64> {
+        if TABLED < self.few.count {
+            return None;
+        }
+        let which = (self.few.hash >> 56) as usize;
+        let table = &self.few.tables[which];
+        if table.tree == core.id && table.leaves == self.few.leaves {
+            return table.root.or_else(|| self.make_table(core, which));
+        }
+        self.few.tables[which] = Table { tree: core.id, leaves: self.few.leaves, root: None };
+        None
+    }
+
+    #[cold]
+    fn make_table(&mut self, core: &Core, which: usize) -> Option<u64> {
+        self.states_of(core);
+        let Few { leaves, count, tables, .. } = &mut self.few;
+        tables[which].root = Some(truths(&core.tree, &leaves[..*count], &mut self.here));
+        tables[which].root
+    }
+
+    /// Of leaves that all cross where truth changes, the one that owns the face, by its place among the crossings: of those
+    /// that take part the one with the smallest key ([`super::owner`]).
+    pub fn owner(&mut self, core: &Core, turn: &Turn) -> usize {
+        self.states_of(core);
+        self.few.put(core, turn.before, &mut self.before);
+        self.few.put(core, turn.after, &mut self.here);
+        let leaves = core.tree.leaves();
+        let leaf = |hit: usize| self.few.leaves[self.few.hits[hit].slot as usize];
+        let makes = |hit: usize| self.here.differs(&self.before, &core.tree, leaf(hit) as usize);
+        let fits = |hit: usize| {
+            let entering = self.few.hits[hit].crossing.entering;
+            core.tree.negated[leaf(hit) as usize].is_none_or(|not| (entering != not) == turn.entering)
+        };
+        let key = |hit: &usize| (leaves[leaf(*hit) as usize].key(), leaf(*hit));
+        let all = || turn.from..turn.to;
+        let first = all().min_by_key(key).unwrap_or(turn.from);
+        if makes(first) {
+            return first;
+        }
+        all().filter(|hit| fits(*hit) && makes(*hit)).min_by_key(key).unwrap_or(first)
+    }
+
+    /// Of the leaves with a material that fill the object where these leaves are, the last written.
+    #[inline]
+    pub fn filler(&mut self, core: &Core, mask: u64) -> Option<u32> {
+        let (leaves, slots, met) = (core.tree.leaves(), 0..self.few.count, self.few.leaves);
+        let inside = slots.filter(|slot| mask >> slot & 1 == 1).map(|slot| met[slot]);
+        let can = |leaf: &u32| leaves[*leaf as usize].can_fill();
+        if !inside.clone().any(|leaf| can(&leaf)) {
+            return None;
+        }
+        self.states_of(core);
+        self.few.put(core, mask, &mut self.here);
+        let state = &self.here;
+        let fill = inside.filter(can).filter(|leaf| state.fills(&core.tree, *leaf as usize));
+        fill.max_by_key(|leaf| (leaves[*leaf as usize].rank, *leaf)).map(|leaf| core.first(leaf))
+    }
+}
+
+impl Few {
+    #[inline]
+    pub fn clear(&mut self, tree: u64) {
+        (self.leaves, self.count, self.hash) = ([NO_LEAF; FEW], 0, tree.wrapping_mul(MIX));
+        (self.inside, self.hit_count) = (0, 0);
+        self.shown.clear();
+    }
+
+    /// Makes a state that in which the leaves in these slots are inside.
+    fn put(&self, core: &Core, mask: u64, state: &mut State) {
+        state.reset(&core.tree);
+        for slot in (0..self.count).filter(|slot| mask >> slot & 1 == 1) {
+            state.set(&core.tree, self.leaves[slot] as usize, Truth::Yes);
+        }
+    }
+
+    #[inline]
+    pub fn hits(&self) -> &[Hit] {
+        &self.hits[..self.hit_count]
+    }
+
+    /// Keeps a leaf with its crossings in `fresh`; false where there is no room for it, or more crossings than closed forms
+    /// have.
+    #[inline]
+    pub fn keep(&mut self, leaf: u32, inside: bool) -> bool {
+        let slot = self.count;
+        if slot == FEW || 2 < self.fresh.len() {
+            return false;
+        }
+        self.leaves[slot] = leaf;
+        self.hash = (self.hash ^ u64::from(leaf)).wrapping_mul(MIX);
+        self.count += 1;
+        self.inside |= u64::from(inside) << slot;
+        for crossing in &self.fresh {
+            let mut at = self.hit_count;
+            while 0 < at && crossing.t < self.hits[at - 1].crossing.t {
+                self.hits[at] = self.hits[at - 1];
+                at -= 1;
+            }
+            self.hits[at] = Hit { slot: slot as u32, crossing: *crossing };
+            self.hit_count += 1;
+        }
+        true
+    }
+}
