@@ -16,7 +16,10 @@ fn rays() -> usize {
     if std::env::var_os("PSS_LONG").is_some() { 100_000 } else { 3_000 }
 }
 
-const OPERATORS: [(&str, fn(bool, bool) -> bool); 4] =
+/// An operator's sign and what it makes of two truths.
+type Operator = (&'static str, fn(bool, bool) -> bool);
+
+const OPERATORS: [Operator; 4] =
     [("|", |a, b| a || b), ("&", |a, b| a && b), ("-", |a, b| a && !b), ("^", |a, b| a != b)];
 
 /// Boxes of which the first two share one, two or all six faces, and the third some of either.
