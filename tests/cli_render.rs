@@ -111,6 +111,9 @@ fn statistics_have_every_field() {
     assert!(
         0.0 < number("/rays/shadow") && 0.0 < number("/pss/projections") && 0.0 < number("/pss/crossings")
     );
+    // What is cut has to have an inside: whether it does was measured.
+    assert_eq!(stats.pointer("/scans/0/solidity/body"), Some(&serde_json::json!("Solid")));
+    assert!(100.0 <= number("/scans/0/solidity/chords") && number("/scans/0/solidity/odd_chords") <= 1.0);
 }
 
 #[test]

@@ -180,7 +180,7 @@ impl<'a> Builder<'a> {
     /// Adds a scan.
     pub fn add(&mut self, name: &str, samples: Samples, sampling: SampleOptions, options: Options) -> ScanId {
         let notes = samples.notes.clone();
-        self.scans.push(ScanReport { name: name.to_owned(), samples: samples.len(), notes });
+        self.scans.push(ScanReport { name: name.to_owned(), samples: samples.len(), notes, solidity: None });
         let whole = Part::new(samples, &options);
         let scan = Scan { whole, sampling, options, measured: None, bounding: None, closed: Vec::new() };
         self.scan.push(scan);
@@ -214,6 +214,13 @@ impl<'a> Builder<'a> {
     /// The surface as it stands: a sheet, its solidity not asked for.
     pub fn unmeasured(&self, id: ScanId) -> Arc<PointSet> {
         self.scan[id.0].whole.surface.clone()
+    }
+
+    /// What was found about each scan so far.
+    pub fn reports(&self) -> Vec<ScanReport> {
+        let solidity = |scan: &Scan| scan.measured.as_ref().map(|(solidity, _)| *solidity);
+        let all = self.scans.iter().zip(&self.scan);
+        all.map(|(report, scan)| ScanReport { solidity: solidity(scan), ..report.clone() }).collect()
     }
 
     /// The surface with its solidity measured.

@@ -29,6 +29,7 @@ use crate::geom::Aabb;
 use crate::scene::{BuildError, Call, Catalog, Scene};
 use crate::shot::settings::{self, Overrides};
 use crate::shot::{Camera, Light, Material, Settings, Shot, World, camera, light, material};
+use crate::solid::point_set::Solidity;
 use crate::solid::{Counts, table};
 
 use build::Builder;
@@ -85,6 +86,8 @@ pub struct ScanReport {
     pub samples: usize,
     /// What was dropped or mended, one sentence each.
     pub notes: Vec<String>,
+    /// Whether it bounds a solid, if the scene had to know.
+    pub solidity: Option<Solidity>,
 }
 
 /// Everything that a scene can call.
@@ -113,7 +116,8 @@ pub fn prepare(scene: &Scene, options: &Options) -> Result<Prepared, Vec<Diagnos
     else {
         return Err(errors);
     };
-    let Builder { warnings, inputs, counts, scans, .. } = builder;
+    let scans = builder.reports();
+    let Builder { warnings, inputs, counts, .. } = builder;
     let camera = chosen.unwrap_or_else(|| Camera::fit(world.bounds()));
     let shot = Shot { world, camera, lights, materials, settings };
     Ok(Prepared { shot, warnings, inputs, counts, scans, outline })

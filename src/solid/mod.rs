@@ -37,7 +37,7 @@ pub use crossing::{Answer, Crossing};
 use crate::geom::{Aabb, Interval, Lean, Ray};
 
 /// What a thing's crossings mean.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, serde::Serialize)]
 pub enum Body {
     /// It has an inside; crossings alternate between entries and exits.
     Solid,

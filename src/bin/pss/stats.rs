@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use pss::prepare::ScanReport;
 use pss::render::Rendered;
+use pss::solid::Body;
 use serde::Serialize;
 
 use crate::system;
@@ -44,6 +45,19 @@ struct ScanNotes {
     samples: usize,
     /// What was dropped or mended, one sentence each.
     notes: Vec<String>,
+    /// `None` where nothing depends on it: of a scan drawn by itself, or closed.
+    solidity: Option<SolidityNotes>,
+}
+
+/// Whether a scan bounds a solid, and the numbers that say so.
+#[derive(Serialize, Debug)]
+struct SolidityNotes {
+    body: Body,
+    chords: u32,
+    odd_chords: u32,
+    open_holes: u32,
+    /// Area of these holes over that of the surface.
+    missing: f64,
 }
 
 #[derive(Serialize, Debug)]
@@ -84,7 +98,14 @@ struct CsgCounts {
 
 impl ScanNotes {
     fn new(scan: &ScanReport) -> ScanNotes {
-        ScanNotes { name: scan.name.clone(), samples: scan.samples, notes: scan.notes.clone() }
+        let solidity = scan.solidity.map(|s| SolidityNotes {
+            body: s.body(),
+            chords: s.chords,
+            odd_chords: s.odd,
+            open_holes: s.open_holes,
+            missing: s.missing,
+        });
+        ScanNotes { name: scan.name.clone(), samples: scan.samples, notes: scan.notes.clone(), solidity }
     }
 }
 
