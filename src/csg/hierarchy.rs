@@ -1,40 +1,76 @@
-//! A hierarchy of boxes over the leaves of an object, walked front to back: a leaf comes out when nothing that is left
-//! can begin before it.
+//! A hierarchy of boxes over the leaves of an object, four to a node, in single precision: they only cull, with room for
+//! all roundings ([`super::walk`]), and take half the room and time that they would in double.
 
-use crate::geom::{Aabb, Interval, Ray, tolerance};
+use glam::{DVec3, Vec4};
 
-/// Two boxes side by side, so that a ray is tried on both at once.
+use crate::geom::Aabb;
+
+/// Four boxes side by side, so that a ray is tried on all at once; in the frame of [`Grid`].
 #[derive(Clone, Copy, Debug)]
-struct Node {
-    /// For each axis the low planes of both children, then their high planes.
-    planes: [[[f64; 2]; 2]; 3],
+pub(super) struct Node {
+    /// For each axis the low planes, then the high planes.
+    pub planes: [[Vec4; 2]; 3],
     /// A node, or with [`LEAF`] set a leaf.
-    child: [u32; 2],
+    pub child: [u32; WIDTH],
 }
 
-const LEAF: u32 = 1 << 31;
+/// Set in what is a leaf.
+pub(super) const LEAF: u32 = 1 << 31;
+
+/// How many boxes a node has.
+pub(super) const WIDTH: usize = 4;
+
+/// Of no box at all: outside of all boxes that are, its high planes below its low ones.
+const NONE: Node = Node { planes: [[Vec4::splat(64.0), Vec4::splat(-64.0)]; 3], child: [0; WIDTH] };
+
+/// The frame in which all boxes with an end lie between -1 and 1: a point p is there at (p - center) * scale.
+#[derive(Clone, Copy, Default, Debug)]
+pub(super) struct Grid {
+    /// The box around all.
+    pub bounds: Aabb,
+    pub center: DVec3,
+    pub scale: f64,
+}
+
+impl Grid {
+    fn around(bounds: Aabb) -> Grid {
+        // Halved first: the sum and the difference of the largest numbers have no room.
+        let center = 0.5 * bounds.min + 0.5 * bounds.max;
+        let half = (0.5 * bounds.max - 0.5 * bounds.min).max_element();
+        Grid { bounds, center, scale: half.max(f64::MIN_POSITIVE).recip().min(f64::MAX) }
+    }
+
+    fn place(&self, p: DVec3) -> [f32; 3] {
+        ((p - self.center) * self.scale).as_vec3().to_array()
+    }
+}
 
 /// Boxes of leaves, and boxes around them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hierarchy {
-    nodes: Vec<Node>,
+    pub nodes: Vec<Node>,
+    pub grid: Grid,
     /// Leaves that are tried one by one: those without end, or the only one.
-    wide: Vec<(u32, Aabb)>,
+    pub wide: Vec<u32>,
+    /// The box of each leaf.
+    pub boxes: Vec<Aabb>,
     /// The worst condition of a frame: by so much the error of a far origin grows.
-    condition: f64,
+    pub condition: f64,
 }
 
 impl Hierarchy {
     /// Over the leaves whose box is not empty.
-    pub fn new(boxes: &[Aabb], condition: f64) -> Hierarchy {
+    pub fn new(boxes: Vec<Aabb>, condition: f64) -> Hierarchy {
         let (mut wide, mut some) = (Vec::new(), Vec::new());
-        for (i, b) in boxes.iter().enumerate().filter(|(_, b)| !b.is_empty()) {
-            if b.is_finite() { &mut some } else { &mut wide }.push((i as u32, *b));
+        for (i, b) in (0u32..).zip(&boxes).filter(|(_, b)| !b.is_empty()) {
+            if b.is_finite() { some.push((i, *b)) } else { wide.push(i) }
         }
         if some.len() == 1 {
-            wide.append(&mut some);
+            wide.extend(some.pop().map(|b| b.0));
         }
-        let mut hierarchy = Hierarchy { nodes: Vec::with_capacity(some.len()), wide, condition };
+        let grid = Grid::around(union(&some));
+        let mut hierarchy =
+            Hierarchy { nodes: Vec::with_capacity(some.len() / 2), grid, wide, boxes, condition };
         if !some.is_empty() {
             hierarchy.build(&mut some);
         }
@@ -44,30 +80,54 @@ impl Hierarchy {
     /// Builds the nodes over two or more leaves; every node comes before those below it.
     fn build(&mut self, all: &mut [(u32, Aabb)]) {
         let mut open = vec![(0usize, 0usize, all.len())];
-        self.nodes.push(EMPTY_NODE);
-        while let Some((node, from, to)) = open.pop() {
-            let middle = from + split(&mut all[from..to]);
-            for (side, (lo, hi)) in [(from, middle), (middle, to)].into_iter().enumerate() {
-                let bounds = all[lo..hi].iter().fold(Aabb::EMPTY, |sum, b| sum.union(b.1));
-                let child = if hi - lo == 1 {
+        self.nodes.push(NONE);
+        while let Some((at, from, to)) = open.pop() {
+            let (parts, count) = parts(all, from, to);
+            let mut node = NONE;
+            for (slot, [lo, hi]) in parts[..count].iter().copied().enumerate() {
+                node.child[slot] = if hi - lo == 1 {
                     LEAF | all[lo].0
                 } else {
-                    self.nodes.push(EMPTY_NODE);
+                    self.nodes.push(NONE);
                     open.push((self.nodes.len() - 1, lo, hi));
                     self.nodes.len() as u32 - 1
                 };
-                let node = &mut self.nodes[node];
-                node.child[side] = child;
+                let bounds = union(&all[lo..hi]);
+                let (min, max) = (self.grid.place(bounds.min), self.grid.place(bounds.max));
                 for axis in 0..3 {
-                    node.planes[axis][0][side] = bounds.min[axis];
-                    node.planes[axis][1][side] = bounds.max[axis];
+                    node.planes[axis][0][slot] = min[axis];
+                    node.planes[axis][1][slot] = max[axis];
                 }
             }
+            self.nodes[at] = node;
         }
     }
 }
 
-const EMPTY_NODE: Node = Node { planes: [[[0.0; 2]; 2]; 3], child: [0; 2] };
+fn union(all: &[(u32, Aabb)]) -> Aabb {
+    all.iter().fold(Aabb::EMPTY, |sum, b| sum.union(b.1))
+}
+
+fn area(all: &[(u32, Aabb)]) -> f64 {
+    let s = union(all).size();
+    if all.is_empty() { 0.0 } else { s.x * s.y + s.y * s.z + s.z * s.x }
+}
+
+/// Parts of a range of two or more boxes, each half-open, and how many: the largest is split until there are enough.
+fn parts(all: &mut [(u32, Aabb)], from: usize, to: usize) -> ([[usize; 2]; WIDTH], usize) {
+    let (mut parts, mut count) = ([[from, to]; WIDTH], 1);
+    while count < WIDTH {
+        let size = |at: &usize| area(&all[parts[*at][0]..parts[*at][1]]);
+        let many = (0..count).filter(|at| 1 < parts[*at][1] - parts[*at][0]);
+        let Some(at) = many.max_by(|a, b| size(a).total_cmp(&size(b)).then(b.cmp(a))) else { break };
+        let [lo, hi] = parts[at];
+        let middle = lo + split(&mut all[lo..hi]);
+        parts[at] = [lo, middle];
+        parts[count] = [middle, hi];
+        count += 1;
+    }
+    (parts, count)
+}
 
 /// Parts boxes in two by the surface area heuristic over sixteen bins of their centres along the longest axis (Wald
 /// 2007, "On fast construction of SAH-based bounding volume hierarchies"); where that parts nothing, in halves.
@@ -102,134 +162,6 @@ fn split(all: &mut [(u32, Aabb)]) -> usize {
 fn halves(all: &mut [(u32, Aabb)], axis: usize, half: usize) -> usize {
     all.sort_by(|a, b| a.1.center()[axis].total_cmp(&b.1.center()[axis]).then(a.0.cmp(&b.0)));
     half
-}
-
-/// A ray made ready to be tried on boxes.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Probe {
-    inverse: [f64; 3],
-    /// 1 where the direction is below zero: the high plane is the near one.
-    back: [usize; 3],
-    /// The origin moved by the growth of the boxes, as the near and as the far plane see it.
-    near: [f64; 3],
-    far: [f64; 3],
-    range: Interval,
-}
-
-impl Probe {
-    /// Boxes are grown by what a far origin adds to the errors of crossings.
-    pub fn new(ray: &Ray, range: Interval, condition: f64) -> Probe {
-        let grow = tolerance::cleanup(ray.origin.length()) * condition;
-        let d = ray.dir.to_array();
-        let back = d.map(|d| usize::from(d < 0.0));
-        let o = ray.origin.to_array();
-        let sign = |axis: usize| if back[axis] == 1 { -grow } else { grow };
-        Probe {
-            inverse: d.map(f64::recip),
-            back,
-            near: std::array::from_fn(|axis| o[axis] + sign(axis)),
-            far: std::array::from_fn(|axis| o[axis] - sign(axis)),
-            range,
-        }
-    }
-
-    /// The parts of the ray inside two boxes, widened by a few ulps; `lo <= hi` where a box is met. Along an axis that
-    /// the ray is square to, the products are infinite of the right sign, or, in the very plane of a face, no number,
-    /// which the comparisons leave aside.
-    #[inline]
-    fn pair(&self, planes: &[[[f64; 2]; 2]; 3]) -> ([f64; 2], [f64; 2]) {
-        let (mut lo, mut hi) = ([f64::NEG_INFINITY; 2], [f64::INFINITY; 2]);
-        for axis in 0..3 {
-            let (near, far) = (&planes[axis][self.back[axis]], &planes[axis][1 - self.back[axis]]);
-            for side in 0..2 {
-                let a = (near[side] - self.near[axis]) * self.inverse[axis];
-                let b = (far[side] - self.far[axis]) * self.inverse[axis];
-                lo[side] = if lo[side] < a { a } else { lo[side] };
-                hi[side] = if b < hi[side] { b } else { hi[side] };
-            }
-        }
-        // Each end carries four roundings: of the plane's offset, the inverse, the product and the box's own corner.
-        const PAD: f64 = 8.0 * f64::EPSILON;
-        for side in 0..2 {
-            // An infinite end of a box that is missed has no ulp: `min` and `max` keep it.
-            lo[side] = lo[side].min(lo[side] - PAD * lo[side].abs());
-            hi[side] = hi[side].max(hi[side] + PAD * hi[side].abs());
-        }
-        (lo, hi)
-    }
-
-    /// The part of the ray inside a box.
-    fn one(&self, b: &Aabb) -> Interval {
-        let planes = std::array::from_fn(|axis| [[b.min[axis]; 2], [b.max[axis]; 2]]);
-        let (lo, hi) = self.pair(&planes);
-        Interval::new(lo[0], hi[0])
-    }
-}
-
-/// A node still to be opened.
-#[derive(Clone, Copy, Debug)]
-struct Waiting {
-    node: u32,
-    /// Where the ray enters it or anything below on the stack.
-    least: f64,
-}
-
-/// A walk along a ray.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Walk {
-    probe: Probe,
-    stack: Vec<Waiting>,
-}
-
-impl Walk {
-    /// Begins: shows the leaves that are tried one by one.
-    pub fn begin(
-        &mut self,
-        hierarchy: &Hierarchy,
-        ray: &Ray,
-        range: Interval,
-        mut show: impl FnMut(u32, Interval),
-    ) {
-        self.probe = Probe::new(ray, range, hierarchy.condition);
-        self.stack.clear();
-        for (leaf, bounds) in &hierarchy.wide {
-            let met = if *bounds == Aabb::ALL { Interval::ALL } else { self.probe.one(bounds) };
-            if !met.intersect(range).is_empty() {
-                show(*leaf, met);
-            }
-        }
-        if !hierarchy.nodes.is_empty() {
-            self.stack.push(Waiting { node: 0, least: f64::NEG_INFINITY });
-        }
-    }
-
-    /// Nothing that has not been shown begins before this.
-    #[inline]
-    pub fn least(&self) -> f64 {
-        self.stack.last().map_or(f64::INFINITY, |w| w.least)
-    }
-
-    /// Opens one node; shows leaves with where the ray is inside their boxes.
-    #[inline]
-    pub fn step(&mut self, hierarchy: &Hierarchy, mut show: impl FnMut(u32, Interval)) {
-        let Some(Waiting { node, .. }) = self.stack.pop() else { return };
-        let Node { planes, child } = &hierarchy.nodes[node as usize];
-        let (lo, hi) = self.probe.pair(planes);
-        let range = self.probe.range;
-        let met = |side: usize| lo[side].max(range.lo) <= hi[side].min(range.hi);
-        // The near one is opened first, so it is pushed last.
-        let near = usize::from(lo[1] < lo[0]);
-        for side in [1 - near, near] {
-            if !met(side) {
-                continue;
-            }
-            if child[side] & LEAF != 0 {
-                show(child[side] & !LEAF, Interval::new(lo[side], hi[side]));
-            } else {
-                self.stack.push(Waiting { node: child[side], least: lo[side].min(self.least()) });
-            }
-        }
-    }
 }
 
 /// For the growth of the boxes.

@@ -57,7 +57,7 @@ impl Leaf {
 
     /// The box grown by what rounding may move a crossing out of it. Box and crossings are rounded apart, each by as much
     /// as two faces that were one; so it is grown by what the clean-up takes for nothing, and more where the frame is
-    /// skewed. A ray that starts far away adds its own share ([`super::hierarchy::Probe`]).
+    /// skewed. A ray that starts far away adds its own share ([`super::walk::Walk`]).
     pub(super) fn grown(&self) -> Aabb {
         if self.bounds.is_empty() {
             return Aabb::EMPTY;

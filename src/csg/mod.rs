@@ -21,6 +21,7 @@ mod sweep;
 mod topset;
 mod tree;
 mod truth;
+mod walk;
 
 pub use clip::{Clipped, Clippee};
 pub use expr::Expr;

@@ -75,9 +75,9 @@ impl Core {
         let bounds = bounds_of_nodes(&tree, &grown).last().copied().unwrap_or_default();
         let bounds = if bounds.is_finite() { bounds } else { Aabb::ALL };
         let reaches = reaches(&tree);
-        let hierarchy = Hierarchy::new(&reaches, condition);
         let outside = State::outside(&tree);
         let few = All::new(&tree, &costs, &reaches, &outside);
+        let hierarchy = Hierarchy::new(reaches, condition);
         let id = NEXT.fetch_add(1, Ordering::Relaxed);
         Core {
             id,

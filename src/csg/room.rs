@@ -1,11 +1,11 @@
 //! Room for sweeps, lent by a thread: what a ray meets, what leaves have answered, what is inside.
 
-use super::hierarchy::Walk;
 use super::object::Core;
 use super::open::Open;
 use super::queue::Queue;
 use super::slots::Few;
 use super::truth::State;
+use super::walk::Walk;
 use crate::geom::{Interval, Ray};
 use crate::solid::{Answer, Crossing};
 

@@ -113,14 +113,13 @@ pub(super) struct Few {
     /// Ascending.
     hits: [Hit; MOST],
     pub hit_count: usize,
-    tables: [Table; TABLES],
+    /// None until the first is asked for.
+    tables: Vec<Table>,
 }
 
 impl Default for Few {
     fn default() -> Few {
-        let no_table = Table { tree: 0, leaves: [NO_LEAF; FEW], root: None };
         let no_hit = Hit { slot: 0, crossing: Crossing::exact(0.0, false, 0) };
-        let (hits, tables) = ([no_hit; MOST], [no_table; TABLES]);
         Few {
             leaves: [NO_LEAF; FEW],
             count: 0,
@@ -128,9 +127,9 @@ impl Default for Few {
             shown: Vec::new(),
             inside: 0,
             fresh: Vec::new(),
-            hits,
+            hits: [no_hit; MOST],
             hit_count: 0,
-            tables,
+            tables: Vec::new(),
         }
     }
 }
@@ -141,6 +140,9 @@ impl Room {
     pub fn table(&mut self, core: &Core) -> Option<u64> {
         if TABLED < self.few.count {
             return None;
+        }
+        if self.few.tables.is_empty() {
+            self.few.tables = vec![Table { tree: 0, leaves: [NO_LEAF; FEW], root: None }; TABLES];
         }
         let which = (self.few.hash >> 56) as usize;
         let table = &self.few.tables[which];

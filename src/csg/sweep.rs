@@ -7,9 +7,10 @@
 //! asked, so neither does any boundary.
 
 use super::object::Core;
-use super::queue::{Event, What};
+use super::queue::{Event, Queue, What};
 use super::room::{Met, Room};
 use super::truth::{State, Truth};
+use super::walk::Walk;
 use crate::geom::{Interval, Ray};
 use crate::solid::{self, Answer, Crossing};
 use glam::DVec3;
@@ -52,7 +53,8 @@ impl<'a> Sweep<'a> {
     ) -> Sweep<'a> {
         room.enter(core);
         let Room { met, walk, queue, open, state, .. } = room;
-        walk.begin(&core.hierarchy, ray, range, |leaf, inside| {
+        walk.begin(&core.hierarchy, ray, range, |sight, leaf| {
+            let Some(inside) = sight.inside(&core.hierarchy, leaf) else { return };
             if range.lo < inside.lo {
                 return show(met, queue, range, leaf, inside);
             }
@@ -70,7 +72,7 @@ impl<'a> Sweep<'a> {
         let (core, range) = (self.core, self.range);
         let Room { met, walk, queue, .. } = &mut *self.room;
         while walk.least() <= t {
-            walk.step(&core.hierarchy, |leaf, inside| show(met, queue, range, leaf, inside));
+            step(core, walk, met, queue, range);
             if walk.least() == f64::INFINITY {
                 break;
             }
@@ -88,7 +90,7 @@ impl<'a> Sweep<'a> {
             if next < least || limit < least || least == f64::INFINITY {
                 return next;
             }
-            walk.step(&core.hierarchy, |leaf, inside| show(met, queue, range, leaf, inside));
+            step(core, walk, met, queue, range);
         }
     }
 
@@ -276,9 +278,19 @@ impl<'a> Sweep<'a> {
     }
 }
 
+/// Opens a node of the hierarchy.
+#[inline]
+fn step(core: &Core, walk: &mut Walk, met: &mut Vec<Met>, queue: &mut Queue, range: Interval) {
+    walk.step(&core.hierarchy, |sight, leaf| {
+        if let Some(inside) = sight.inside(&core.hierarchy, leaf) {
+            show(met, queue, range, leaf, inside);
+        }
+    });
+}
+
 /// A leaf comes in sight.
 #[inline]
-fn show(met: &mut Vec<Met>, queue: &mut super::queue::Queue, range: Interval, leaf: u32, inside: Interval) {
+fn show(met: &mut Vec<Met>, queue: &mut Queue, range: Interval, leaf: u32, inside: Interval) {
     queue.push(Event { t: inside.lo.max(range.lo), met: met.len() as u32, what: What::Open });
     met.push(Met::new(leaf, inside));
 }

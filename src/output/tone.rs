@@ -1,24 +1,60 @@
 //! From linear light to what a display shows: exposure, tone curve, sRGB.
 
+use std::sync::LazyLock;
+
 use crate::shot::settings::Tone;
 
 /// A linear colour as 8-bit display values, after so many stops of exposure.
 pub fn display(color: [f32; 3], exposure: f64, tone: Tone) -> [u8; 3] {
     let gain = exposure.exp2() as f32;
     let color = color.map(|c| c * gain);
-    let encoded = match tone {
+    match tone {
         Tone::None => color.map(srgb_from_linear),
         Tone::Reinhard => reinhard(color).map(srgb_from_linear),
-        Tone::Agx => agx(color),
-    };
-    // A cast saturates and takes NaN to 0.
-    encoded.map(|c| (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8)
+        // A cast saturates and takes NaN to 0.
+        Tone::Agx => agx(color).map(|c| (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8),
+    }
 }
 
-/// The sRGB encoding of a linear value, clamped to [0, 1] (IEC 61966-2-1).
-pub fn srgb_from_linear(linear: f32) -> f32 {
+/// The 8-bit sRGB code nearest to a linear value, which is clamped to [0, 1]; of NaN it is 0.
+pub fn srgb_from_linear(linear: f32) -> u8 {
     let c = linear.clamp(0.0, 1.0);
-    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
+    let cell = (c * CELLS as f32) as usize;
+    let mut code = CODES.first[cell.min(CELLS - 1)];
+    while code < u8::MAX && CODES.least[usize::from(code) + 1] <= c {
+        code += 1;
+    }
+    code
+}
+
+/// So many that nearly none has more than one step between codes in it: the curve begins with 12.92 * 255 to a unit.
+const CELLS: usize = 4096;
+
+/// Where codes begin, so that no pixel costs a power.
+struct Codes {
+    /// The least linear value of each code.
+    least: [f32; 256],
+    /// The code at the low end of each cell of [0, 1].
+    first: [u8; CELLS],
+}
+
+static CODES: LazyLock<Codes> = LazyLock::new(|| {
+    let mut least = [0.0; 256];
+    for (code, least) in least.iter_mut().enumerate().skip(1) {
+        let exact = linear_from_srgb((code as f64 - 0.5) / 255.0);
+        let near = exact as f32;
+        *least = if f64::from(near) < exact { near.next_up() } else { near };
+    }
+    let first = std::array::from_fn(|cell| {
+        let low = cell as f32 / CELLS as f32;
+        (least.partition_point(|least| *least <= low) - 1) as u8
+    });
+    Codes { least, first }
+});
+
+/// The linear value of an sRGB value in [0, 1] (IEC 61966-2-1).
+fn linear_from_srgb(c: f64) -> f64 {
+    if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 
 /// Luminance L becomes L / (1 + L), hue stays (Reinhard, Stark, Shirley and Ferwerda 2002, equation 3).
@@ -73,6 +109,19 @@ mod tests {
             assert_eq!(display([linear; 3], 0.0, Tone::None), [code; 3], "{linear}");
         }
         assert_eq!(display([f32::NAN, -1.0, f32::INFINITY], 0.0, Tone::None), [0, 0, 255]);
+    }
+
+    #[test]
+    fn codes_are_the_standards_curve_rounded() {
+        let curve = |c: f64| if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+        for bits in (0..=1.0_f32.to_bits()).step_by(997) {
+            let c = f32::from_bits(bits);
+            let exact = 255.0 * curve(f64::from(c));
+            // The standard's two constants for where the curve begins meet within 1e-7; nothing is said that near a half.
+            if 1e-4 < (exact.fract() - 0.5).abs() {
+                assert_eq!(f64::from(srgb_from_linear(c)), exact.round(), "{c:e}");
+            }
+        }
     }
 
     #[test]

@@ -69,7 +69,12 @@ impl Solid for Sphere {
         }
         let a = d.length_squared();
         let b = o.dot(d);
-        let m = (o - (b / a) * d).length();
+        let m = (o - (b / a) * d).length_squared();
+        if r * r < m * (1.0 - 8.0 * f64::EPSILON) {
+            // Beyond what the roundings of `m` can make of a line that touches: most lines, for no square root.
+            return Answer::whole_line(false);
+        }
+        let m = m.sqrt();
         let c = (o.length() - r) * (o.length() + r);
         if let Some([t0, t1]) = roots::quadratic(a, b, c, a * (r - m) * (r + m)) {
             out.push(Crossing::exact(t0, true, 0));
