@@ -3,6 +3,7 @@
 //! crosses at one and the same t, so that the clean-up has no say; all other rays go the long way
 //! ([`super::sweep`]), with the same answers.
 
+use super::bundle::Bundle;
 use super::object::{Core, Scratch};
 use super::room::Room;
 use super::slots::{Few, Hit, Turn};
@@ -50,10 +51,20 @@ enum Truths {
 impl<'a> Look<'a> {
     /// `None` where the ray meets other leaves than closed forms at once.
     #[inline]
-    pub fn new(core: &'a Core, ray: &'a Ray, range: Interval, scratch: &'a mut Scratch) -> Option<Look<'a>> {
+    pub fn new(
+        core: &'a Core,
+        ray: &'a Ray,
+        range: Interval,
+        bundle: &Bundle,
+        scratch: &'a mut Scratch,
+    ) -> Option<Look<'a>> {
         let Scratch { solid: scratch, room } = scratch;
         room.few.clear(core.id);
         let mut look = Look { core, ray, range, room, scratch, known: f64::INFINITY, truths: Truths::Sought };
+        if let Some(few) = bundle.few(core) {
+            look.room.walk.begin_at_end();
+            return few.iter().all(|leaf| look.take(*leaf, false)).then_some(look);
+        }
         match &core.few {
             Some(all) => {
                 look.truths = Truths::Table(all.root);

@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec4};
 
-use crate::geom::Aabb;
+use crate::geom::{Aabb, tolerance};
 
 /// Four boxes side by side, so that a ray is tried on all at once; in the frame of [`Grid`].
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,16 @@ pub(super) const LEAF: u32 = 1 << 31;
 
 /// How many boxes a node has.
 pub(super) const WIDTH: usize = 4;
+
+/// More than the rounding of a plane.
+const GRAIN: f64 = f32::EPSILON as f64;
+
+/// What a box of a node is around.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Child {
+    Node(u32),
+    Leaf(u32),
+}
 
 /// Of no box at all: outside of all boxes that are, its high planes below its low ones.
 const NONE: Node = Node { planes: [[Vec4::splat(64.0), Vec4::splat(-64.0)]; 3], child: [0; WIDTH] };
@@ -75,6 +85,31 @@ impl Hierarchy {
             hierarchy.build(&mut some);
         }
         hierarchy
+    }
+
+    /// By so much boxes are grown for rays that start so far off: what a far origin adds to the errors of crossings.
+    pub fn grow(&self, origin: f64) -> f64 {
+        tolerance::cleanup(origin) * self.condition
+    }
+
+    /// What is below a node, each with a box around it.
+    pub fn children(&self, node: u32) -> impl Iterator<Item = (Child, Aabb)> {
+        let Node { planes, child } = &self.nodes[node as usize];
+        let corner = |slot: usize, side: usize| {
+            let place = DVec3::from_array(std::array::from_fn(|axis| f64::from(planes[axis][side][slot])));
+            // The planes are rounded to the nearest; a box of none stays one of none.
+            let out = if side == 0 { -GRAIN } else { GRAIN };
+            self.grid.center + (place + out) / self.grid.scale
+        };
+        let one = move |slot: usize| {
+            let kind = if child[slot] & LEAF != 0 {
+                Child::Leaf(child[slot] & !LEAF)
+            } else {
+                Child::Node(child[slot])
+            };
+            (kind, Aabb { min: corner(slot, 0), max: corner(slot, 1) })
+        };
+        (0..WIDTH).map(one).filter(|(_, bounds)| !bounds.is_empty())
     }
 
     /// Builds the nodes over two or more leaves; every node comes before those below it.

@@ -73,6 +73,7 @@ impl Leaf {
 
     /// Appends crossings of a ray given in the leaf's frame ([`Solid::crossings`]), and counts. An answer that is none says
     /// that the ray passes by.
+    #[inline]
     pub fn crossings(
         &self,
         local: &Ray,

@@ -1,6 +1,7 @@
 //! Constructive solid geometry on the intervals of a ray: leaves, the expression over them, and the sweep that
 //! answers which parts of a ray are inside. No concrete solid is known here.
 
+mod bundle;
 mod cleanup;
 mod clip;
 mod expr;
@@ -23,6 +24,7 @@ mod tree;
 mod truth;
 mod walk;
 
+pub use bundle::Bundle;
 pub use clip::{Clipped, Clippee};
 pub use expr::Expr;
 pub use group::Group;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::bundle::Bundle;
 use super::cleanup::{Bound, Cleaner};
 use super::expr::Expr;
 use super::few::Look;
@@ -111,6 +112,7 @@ impl Core {
     }
 
     /// The leaf that a boundary's index is, or is in.
+    #[inline]
     fn holder(&self, index: u32) -> u32 {
         if self.firsts.is_empty() {
             return index;
@@ -177,10 +179,13 @@ impl Object {
     }
 
     /// The leaf that a boundary names.
+    #[inline]
     pub fn part(&self, index: u32) -> Part<'_> {
         let mut core = &*self.core;
         let mut holder = core.holder(index);
-        let mut part = Part::of(&core.tree.leaves()[holder as usize]);
+        let leaf = &core.tree.leaves()[holder as usize];
+        let Placement { local_from_world, stretch, .. } = leaf.place;
+        let mut part = Part { leaf, local_from_world, stretch, scale: core.scales[holder as usize] };
         let mut index = index - core.first(holder);
         while let Some(group) = &part.leaf.group {
             core = group.0.core();
@@ -199,7 +204,20 @@ impl Object {
 
     /// The first boundary in the range, and whether the ray goes in there.
     pub fn first(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> Option<(Boundary, bool)> {
-        if let Some(found) = Look::new(&self.core, ray, range, scratch).and_then(Look::first) {
+        self.first_of(&Bundle::default(), ray, range, scratch)
+    }
+
+    /// The same for a ray of a bundle and a range from 0 or later on, sooner.
+    #[inline]
+    pub fn first_of(
+        &self,
+        bundle: &Bundle,
+        ray: &Ray,
+        range: Interval,
+        scratch: &mut Scratch,
+    ) -> Option<(Boundary, bool)> {
+        debug_assert!(0.0 <= range.lo || bundle.few(&self.core).is_none());
+        if let Some(found) = Look::new(&self.core, ray, range, bundle, scratch).and_then(Look::first) {
             return found;
         }
         self.cleaner(ray, range, scratch).first()
@@ -207,8 +225,11 @@ impl Object {
 
     /// Whether any part of the range is inside, for a ray that leaves a surface where the range begins: what a leaf does
     /// not resolve there ([`crate::solid::Solid::grain`]) does not count.
+    #[inline]
     pub fn any(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> bool {
-        if let Some(found) = Look::new(&self.core, ray, range, scratch).and_then(Look::any) {
+        if let Some(found) =
+            Look::new(&self.core, ray, range, &Bundle::default(), scratch).and_then(Look::any)
+        {
             return found;
         }
         self.cleaner(ray, range, scratch).any()

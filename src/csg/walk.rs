@@ -8,7 +8,7 @@
 use glam::Vec4;
 
 use super::hierarchy::{Hierarchy, LEAF, Node, WIDTH};
-use crate::geom::{Aabb, Interval, Ray, tolerance};
+use crate::geom::{Aabb, Interval, Ray};
 
 /// By so much boxes are grown: planes, the ray's start and their difference are each rounded, 2^-24 of at most 2, and
 /// what a direction of less than [`STEEPEST`] would move on the way.
@@ -40,6 +40,7 @@ pub(super) struct Sight {
 
 impl Sight {
     /// Boxes are grown by what a far origin adds to the errors of crossings.
+    #[inline]
     fn new(ray: &Ray, range: Interval, grow: f64) -> Sight {
         let d = ray.dir.to_array();
         let back = d.map(|d| usize::from(d < 0.0));
@@ -169,6 +170,7 @@ pub(super) struct Walk {
 
 impl Walk {
     /// Begins: shows the leaves that are tried one by one, of which the ray may miss some.
+    #[inline]
     pub fn begin(
         &mut self,
         hierarchy: &Hierarchy,
@@ -176,7 +178,7 @@ impl Walk {
         range: Interval,
         mut show: impl FnMut(&Sight, u32),
     ) {
-        let grow = tolerance::cleanup(ray.origin.length()) * hierarchy.condition;
+        let grow = hierarchy.grow(ray.origin.length());
         self.sight = Sight::new(ray, range, grow);
         self.stack.clear();
         for leaf in &hierarchy.wide {
@@ -189,6 +191,11 @@ impl Walk {
                 self.stack.push(Waiting { node: 0, least: self.fast.t(0.0) });
             }
         }
+    }
+
+    /// Begins where there is nothing to walk through.
+    pub fn begin_at_end(&mut self) {
+        self.stack.clear();
     }
 
     /// Nothing that has not been shown begins before this.

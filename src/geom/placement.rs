@@ -66,11 +66,13 @@ impl Placement {
     }
 
     /// A world ray in the local frame.
+    #[inline]
     pub fn ray_to_local(&self, ray: &Ray) -> Ray {
         if self.is_identity { *ray } else { ray.transformed(&self.local_from_world) }
     }
 
     /// A local normal as a unit normal of the world. Mirrors keep it outward.
+    #[inline]
     pub fn normal_to_world(&self, normal: DVec3) -> DVec3 {
         // Adding zero turns -0.0 into +0.0, as the product does: frames built on normals look at signs.
         if self.is_identity { normal + DVec3::ZERO } else { (self.normals * normal).normalize_or_zero() }

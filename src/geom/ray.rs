@@ -15,6 +15,7 @@ pub struct Ray {
 
 impl Ray {
     /// A ray. Adding zero turns a component of -0.0 into +0.0, so that mirrored rays take the same branches.
+    #[inline]
     pub fn new(origin: DVec3, dir: DVec3) -> Ray {
         Ray { origin, dir: dir + DVec3::ZERO }
     }
@@ -27,6 +28,7 @@ impl Ray {
     }
 
     /// The point at `t`.
+    #[inline]
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + t * self.dir
     }
@@ -49,6 +51,7 @@ impl Ray {
     }
 
     /// Whether it can be traced: finite, with a direction.
+    #[inline]
     pub fn is_valid(&self) -> bool {
         self.origin.is_finite() && self.dir.is_finite() && self.dir != DVec3::ZERO
     }

@@ -7,6 +7,7 @@ use glam::DVec3;
 ///
 /// The root of larger magnitude comes from `-b -+ sqrt(disc)` without cancellation, the other from the
 /// product of the roots (Vieta; Press et al., Numerical Recipes 5.6). `a` must not be zero.
+#[inline]
 pub fn quadratic(a: f64, b: f64, c: f64, discriminant: f64) -> Option<[f64; 2]> {
     if discriminant.is_nan() || discriminant <= 0.0 {
         return None;

@@ -6,8 +6,9 @@ use super::sampler::{PixelSampler, Sample};
 use super::scenery::{Rays, Scenery, Seen, Tracer};
 use super::tiles::Tile;
 use super::{RenderError, View};
+use crate::csg::Bundle;
 use crate::film::Film;
-use crate::geom::{Interval, Ray};
+use crate::geom::{Beam, Interval, Ray};
 use crate::shot::settings::Integrator;
 use crate::solid::Counts;
 
@@ -34,14 +35,26 @@ impl<'a, S: Scenery> Painter<'a, S> {
     pub fn tile(&self, tile: &Tile) -> Result<(Film, Rays, Counts), RenderError> {
         let mut film = Film::new(tile.size, &self.view.settings.aov)?;
         let mut tracer = Tracer::new(self.scenery);
-        let mut pixel = 0;
-        for y in tile.y..tile.y + tile.size[1] {
-            for x in tile.x..tile.x + tile.size[0] {
+        let whole = self.beam(tile).map_or_else(Bundle::default, |beam| self.scenery.bundle(&beam));
+        for part in tile.parts() {
+            if let Some(beam) = self.beam(&part) {
+                tracer.bundle = self.scenery.part_of_bundle(&whole, &beam);
+            }
+            for (y, x) in
+                (0..part.size[1]).flat_map(|y| (0..part.size[0]).map(move |x| (part.y + y, part.x + x)))
+            {
+                let pixel = (y - tile.y) as usize * tile.size[0] as usize + (x - tile.x) as usize;
                 self.pixel(&mut tracer, x, y, pixel, &mut film);
-                pixel += 1;
             }
         }
         Ok((film, tracer.rays, tracer.scratch.solid.counts))
+    }
+
+    /// The rays from the eye through a tile.
+    fn beam(&self, tile: &Tile) -> Option<Beam> {
+        let [x, y] = [tile.x, tile.y].map(f64::from);
+        let [w, h] = tile.size.map(f64::from);
+        self.view.camera.beam([x, y], [x + w, y + h], self.view.settings.size)
     }
 
     /// Paints a pixel of the whole picture to a place of a film.

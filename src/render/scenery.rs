@@ -3,8 +3,8 @@
 
 use glam::DVec3;
 
-use crate::csg::Scratch;
-use crate::geom::{Aabb, Interval, Ray};
+use crate::csg::{Bundle, Scratch};
+use crate::geom::{Aabb, Beam, Interval, Ray};
 use crate::shot::{Hit, Surface, World};
 
 /// Something that answers rays.
@@ -14,6 +14,21 @@ pub trait Scenery: Sync {
 
     /// The first surface with `t` in `range`.
     fn first(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> Option<Hit>;
+
+    /// What rays of a beam may meet.
+    fn bundle(&self, _beam: &Beam) -> Bundle {
+        Bundle::default()
+    }
+
+    /// The same for a beam within that of a bundle.
+    fn part_of_bundle(&self, _bundle: &Bundle, _beam: &Beam) -> Bundle {
+        Bundle::default()
+    }
+
+    /// The first surface that a ray of a bundle meets from its start on.
+    fn first_of(&self, _bundle: &Bundle, ray: &Ray, scratch: &mut Scratch) -> Option<Hit> {
+        self.first(ray, Interval::AHEAD, scratch)
+    }
 
     /// Whether anything lies in `range`.
     fn blocked(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> bool;
@@ -34,6 +49,18 @@ impl Scenery for World {
 
     fn first(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> Option<Hit> {
         World::first(self, ray, range, scratch)
+    }
+
+    fn bundle(&self, beam: &Beam) -> Bundle {
+        self.solids().bundle(beam)
+    }
+
+    fn part_of_bundle(&self, bundle: &Bundle, beam: &Beam) -> Bundle {
+        self.solids().part_of_bundle(bundle, beam)
+    }
+
+    fn first_of(&self, bundle: &Bundle, ray: &Ray, scratch: &mut Scratch) -> Option<Hit> {
+        World::first_of(self, bundle, ray, Interval::AHEAD, scratch)
     }
 
     fn blocked(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> bool {
@@ -76,6 +103,8 @@ pub struct Tracer<'a, S> {
     pub scratch: Scratch,
     /// Rays so far.
     pub rays: Rays,
+    /// What rays from the eye may meet now.
+    pub bundle: Bundle,
 }
 
 /// A surface that the eye sees.
@@ -92,13 +121,13 @@ pub struct Seen {
 impl<'a, S: Scenery> Tracer<'a, S> {
     /// Starts a tile.
     pub fn new(scenery: &'a S) -> Tracer<'a, S> {
-        Tracer { scenery, scratch: Scratch::default(), rays: Rays::default() }
+        Tracer { scenery, scratch: Scratch::default(), rays: Rays::default(), bundle: Bundle::default() }
     }
 
-    /// What the eye sees along a ray.
+    /// What the eye sees along a ray of the bundle.
     pub fn see(&mut self, ray: &Ray) -> Option<Seen> {
         self.rays.camera += 1;
-        let hit = self.scenery.first(ray, Interval::AHEAD, &mut self.scratch)?;
+        let hit = self.scenery.first_of(&self.bundle, ray, &mut self.scratch)?;
         let surface = self.scenery.surface(ray, &hit);
         let away = if hit.sheet { 0.0 < surface.normal.dot(ray.dir) } else { !hit.entering };
         Some(Seen { hit, surface, normal: if away { -surface.normal } else { surface.normal } })

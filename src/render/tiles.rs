@@ -4,6 +4,9 @@
 /// a large machine several tiles.
 const SIDE: u32 = 32;
 
+/// Side of the parts of a tile, pixels.
+const PART: u32 = 8;
+
 /// A rectangle of pixels.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Tile {
@@ -19,6 +22,17 @@ impl Tile {
     /// How many pixels it has.
     pub fn pixels(&self) -> u64 {
         u64::from(self.size[0]) * u64::from(self.size[1])
+    }
+
+    /// Smaller tiles that make it up, whose rays mostly meet the same few things.
+    pub fn parts(self) -> impl Iterator<Item = Tile> {
+        let [w, h] = self.size;
+        let rows = (0..h).step_by(PART as usize);
+        rows.flat_map(move |y| (0..w).step_by(PART as usize).map(move |x| (x, y))).map(move |(x, y)| Tile {
+            x: self.x + x,
+            y: self.y + y,
+            size: [PART.min(w - x), PART.min(h - y)],
+        })
     }
 }
 
@@ -44,7 +58,7 @@ mod tests {
     fn tiles_cover_every_pixel_once() {
         let window = [5, 31, 100, 65];
         let mut seen = vec![0; 100 * 65];
-        for tile in cover(window) {
+        for tile in cover(window).into_iter().flat_map(Tile::parts) {
             for y in tile.y..tile.y + tile.size[1] {
                 for x in tile.x..tile.x + tile.size[0] {
                     seen[(y * 100 + x) as usize] += 1;

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-use crate::geom::{Aabb, Ray, tolerance};
+use crate::geom::{Aabb, Beam, Ray, tolerance};
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};
 
 /// The `camera` item.
@@ -151,6 +151,7 @@ impl Camera {
     /// The ray through a place of a picture of `size` pixels. Places are continuous and start at the top left:
     /// the centre of pixel (i, j) is (i + 0.5, j + 0.5). The ray starts at the eye (of an orthographic
     /// camera: beside it, in its plane); its direction is not of unit length.
+    #[inline]
     pub fn ray(&self, x: f64, y: f64, size: [u32; 2]) -> Ray {
         let (w, h) = (f64::from(size[0]), f64::from(size[1]));
         let offset = |unit: f64, side: f64| {
@@ -168,6 +169,14 @@ impl Camera {
                 Ray::new(self.eye, cos_lat * level + sin_lat * self.up)
             }
         }
+    }
+
+    /// All rays through a patch of the picture, given two corners of it; `None` where they are not means of those through
+    /// the corners.
+    pub fn beam(&self, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2], size: [u32; 2]) -> Option<Beam> {
+        let corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(|(x, y)| self.ray(x, y, size));
+        let straight = self.lens != Lens::Spherical && corners.iter().all(Ray::is_valid);
+        straight.then(|| Beam::around(&corners))
     }
 
     /// Where the eye is.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::csg::{self, Boundary, Leaf, Object, Part, Spans};
+use crate::csg::{self, Boundary, Bundle, Leaf, Object, Part, Spans};
 use crate::geom::{Aabb, Interval, Ray, tolerance};
 
 /// Everything drawn.
@@ -41,6 +41,7 @@ pub struct Surface {
 }
 
 /// Whether a ray can be traced; one that cannot is counted.
+#[inline]
 fn counted(ray: &Ray, scratch: &mut csg::Scratch) -> bool {
     let valid = ray.is_valid();
     scratch.solid.counts.invalid_rays += u64::from(!valid);
@@ -67,10 +68,22 @@ impl World {
     /// The first surface with `t` in `range`; a ray that is none ([`Ray::is_valid`]) meets nothing and is counted, here
     /// and in what else asks for surfaces.
     pub fn first(&self, ray: &Ray, range: Interval, scratch: &mut csg::Scratch) -> Option<Hit> {
+        self.first_of(&Bundle::default(), ray, range, scratch)
+    }
+
+    /// The same for a ray of a bundle of [`World::solids`] and a range from 0 or later on, sooner.
+    #[inline]
+    pub fn first_of(
+        &self,
+        bundle: &Bundle,
+        ray: &Ray,
+        range: Interval,
+        scratch: &mut csg::Scratch,
+    ) -> Option<Hit> {
         if !counted(ray, scratch) {
             return None;
         }
-        let solid = self.solids.first(ray, range, scratch);
+        let solid = self.solids.first_of(bundle, ray, range, scratch);
         let mut best = solid.map(|(boundary, entering)| Hit { boundary, entering, sheet: false });
         for index in 0..self.sheets.len() {
             let end = best.map_or(range.hi, |hit| hit.boundary.t.min(range.hi));
@@ -81,6 +94,7 @@ impl World {
     }
 
     /// Whether anything lies in `range`.
+    #[inline]
     pub fn blocked(&self, ray: &Ray, range: Interval, scratch: &mut csg::Scratch) -> bool {
         counted(ray, scratch)
             && (self.solids.any(ray, range, scratch)
@@ -144,12 +158,14 @@ impl World {
         last
     }
 
+    #[inline]
     fn part(&self, hit: &Hit) -> Part<'_> {
         let index = hit.boundary.leaf;
         if hit.sheet { Part::of(&self.sheets[index as usize]) } else { self.solids.part(index) }
     }
 
     /// The surface of a hit.
+    #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let Part { leaf, stretch, scale, .. } = self.part(hit);
         let boundary = &hit.boundary;

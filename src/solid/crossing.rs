@@ -23,6 +23,7 @@ pub struct Crossing {
 
 impl Crossing {
     /// A crossing known in closed form.
+    #[inline]
     pub fn exact(t: f64, entering: bool, part: u32) -> Crossing {
         Crossing { t, err: 0.0, shift: 0.0, entering, part, cap: false }
     }
@@ -39,6 +40,7 @@ pub struct Answer {
 
 impl Answer {
     /// Whether crossings are what an answer may have: finite, ascending, and, of a solid, ways in and out by turns.
+    #[inline]
     pub fn is_sound(&self, crossings: &[Crossing], body: impl FnOnce() -> Body) -> bool {
         let (mut last, mut inside, mut ascend, mut turn) = (f64::MIN, self.inside, true, true);
         for c in crossings {
@@ -50,6 +52,7 @@ impl Answer {
     }
 
     /// All crossings of the whole line.
+    #[inline]
     pub fn whole_line(inside: bool) -> Answer {
         Answer { inside, range: Interval::ALL }
     }
