@@ -277,7 +277,7 @@ mod tests {
             2 => DVec3::new(numbers.point().x, 0.0, -1e-40),
             _ => 1e-3 * numbers.point(),
         };
-        let toward = if kind % 3 == 0 { DVec3 { z: b.max.z, ..toward } } else { toward };
+        let toward = if kind.is_multiple_of(3) { DVec3 { z: b.max.z, ..toward } } else { toward };
         let away = [0.1, 3.0, 1e5][kind % 3] * size * (1.0 + numbers.next()) / dir.length();
         Ray::new(toward - away * dir, dir)
     }
