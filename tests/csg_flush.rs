@@ -48,7 +48,7 @@ fn lengths(shot: &Shot, ray: &Ray, scratch: &mut Scratch) -> Vec<f64> {
 /// The criterion, B1 and FEATURES 21, 28, 29: nothing closes the hole of a full-height cylinder, each operand
 /// taking its own way to the same place.
 #[test]
-fn b1_a_flush_through_hole_is_open_at_any_rotation_and_offset() {
+fn b1_cases_21_28_29_a_flush_through_hole_is_open_at_any_rotation_and_offset() {
     let mut scratch = Scratch::default();
     each_frame(|place, map| {
         let text = format!(
@@ -86,7 +86,7 @@ fn b1_a_flush_through_hole_is_open_at_any_rotation_and_offset() {
 
 /// B2, B3, B5, B8 and FEATURES 22, 23, 25, 32: lengths on random rays along z are those of the closed form.
 #[test]
-fn b2_b3_b5_flush_faces_leave_no_films_and_no_walls() {
+fn b2_b3_b5_b8_cases_22_23_25_32_flush_faces_leave_no_films_and_no_walls() {
     let mut scratch = Scratch::default();
     type Truth = fn(f64, f64) -> Option<f64>;
     let scenes: [(&str, Truth); 6] = [
@@ -133,7 +133,7 @@ fn b2_b3_b5_flush_faces_leave_no_films_and_no_walls() {
 
 /// B7, A1, A2 and FEATURES 24, 30: each solid of the table, and a scan, against itself by another route.
 #[test]
-fn b7_a_solid_and_itself_by_another_route() {
+fn b7_cases_24_30_a_solid_and_itself_by_another_route() {
     let routes = [
         ("", ""),
         (".rotate_z(30deg).rotate_z(60deg)", ".rotate_z(90deg)"),
@@ -213,7 +213,7 @@ const INKS: &str =
 
 /// B19 and FEATURES 34: of two materials on one face the first written, wherever the rays land.
 #[test]
-fn b19_the_owner_of_a_flush_face_is_stable() {
+fn b19_case_34_the_owner_of_a_flush_face_is_stable() {
     let mut scratch = Scratch::default();
     each_frame(|place, map| {
         let text = format!(

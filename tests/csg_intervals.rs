@@ -52,6 +52,22 @@ fn not(e: Expr) -> Expr {
     Expr::Not(Box::new(e))
 }
 
+/// An operator of two operands, and what it makes of two truths.
+type Op = (fn(Vec<Expr>) -> Expr, fn(bool, bool) -> bool);
+
+const OPS: [Op; 4] = [
+    (Expr::Or, |a, b| a | b),
+    (Expr::And, |a, b| a & b),
+    (Expr::Xor, |a, b| a ^ b),
+    (
+        |mut l| {
+            let b = not(l.pop().unwrap());
+            Expr::And(vec![l.pop().unwrap(), b])
+        },
+        |a, b| a & !b,
+    ),
+];
+
 /// A1, A2, A6, A12: one set with itself, and complements; unbounded sets are among them.
 #[test]
 fn a1_a2_a6_a12_a_set_with_itself() {
@@ -78,22 +94,9 @@ fn a1_a2_a6_a12_a_set_with_itself() {
 fn a3_a5_all_pairs_of_operators_are_their_truth_tables() {
     let mut scratch = Scratch::default();
     let mut draws = Draws::new(2);
-    type Op = (fn(Vec<Expr>) -> Expr, fn(bool, bool) -> bool);
-    let ops: [Op; 4] = [
-        (Expr::Or, |a, b| a | b),
-        (Expr::And, |a, b| a & b),
-        (Expr::Xor, |a, b| a ^ b),
-        (
-            |mut l| {
-                let b = not(l.pop().unwrap());
-                Expr::And(vec![l.pop().unwrap(), b])
-            },
-            |a, b| a & !b,
-        ),
-    ];
     for trial in 0..TRIALS {
         let lines: Vec<Line> = (0..3).map(|_| line::random(&mut draws, trial % 2 == 0)).collect();
-        let (outer, inner) = (ops[draws.below(4)], ops[draws.below(4)]);
+        let (outer, inner) = (OPS[draws.below(4)], OPS[draws.below(4)]);
         let left = draws.chance(0.5);
         let want = cells(|x| {
             let [a, b, c] = [0, 1, 2].map(|i: usize| inside(&lines[i], x));
@@ -132,6 +135,29 @@ fn a4_many_operands_in_any_brackets() {
         let object = Object::new(leaves(lines), &parts[0]);
         assert_eq!(list(&object, &mut scratch), want);
     }
+}
+
+/// Operands that a ray meets again and again: a torus twice, a gear thirty-two times, two gears tooth in gap; every
+/// operator, both orders, every place of one along the other.
+#[test]
+fn case_18_operands_of_many_intervals() {
+    let mut scratch = Scratch::default();
+    let gear = |first: u32, teeth: u32| -> Vec<f64> { (first..first + 2 * teeth).map(f64::from).collect() };
+    let tori =
+        (0..48).flat_map(|at| (1..8).map(move |tube| [0, tube, 15 - tube, 15].map(|x| f64::from(at + x))));
+    let mut pairs: Vec<[Vec<f64>; 2]> = tori.map(|torus| [torus.to_vec(), gear(0, 32)]).collect();
+    pairs.extend((0..32).map(|shift| [gear(0, 32), gear(shift, 16)]));
+    let mut longest = 0;
+    for pair in pairs.iter().flat_map(|[a, b]| [[a, b], [b, a]]) {
+        for (expr, truth) in OPS {
+            let [a, b] = pair.map(|ends| Line::new(ends));
+            let want = cells(|x| truth(inside(&a, x), inside(&b, x)));
+            let object = Object::new(leaves(vec![a, b]), &expr(vec![leaf(0), leaf(1)]));
+            longest = longest.max(want.len());
+            assert_eq!(list(&object, &mut scratch), want, "{pair:?} {:?}", expr(vec![leaf(0), leaf(1)]));
+        }
+    }
+    assert_eq!(longest, 32);
 }
 
 /// A7 and A8: the matrix of positions by operators, both orders; what touches leaves neither film nor wall.

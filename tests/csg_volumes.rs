@@ -42,7 +42,7 @@ fn check(cases: &[(&str, &str, f64, f64)]) {
 }
 
 #[test]
-fn cases_21_to_32_coincident_faces_leave_the_volume_exact() {
+fn b13_cases_21_to_33_coincident_faces_leave_the_volume_exact() {
     let cube = "box([-1, -1, -1], [1, 1, 1])";
     let c = |x: f64| format!("box([{x}, {x}, 0], [{}, {}, 1])", x + 1.0, x + 1.0);
     let multi = format!("(({} - {}) - {})", c(0.0), c(0.3), c(-0.3));
