@@ -246,3 +246,43 @@ fn cases_61_to_70_maps_and_structure() {
         ("70 finite part of a half-space", "(half_space(z < 0) & box([-1, -1, -1], [1, 1, 1]))", 1.5, 4.0),
     ]);
 }
+
+/// Volume and area of solids with faces along the axes and edges at multiples of 0.1 within [-1, 2]^3, and the most spans on
+/// one ray: rays along each axis through the middles of a grid that the edges run along count both exactly.
+fn measures(text: &str, per_tenth: u32) -> (f64, f64, usize) {
+    let shot = shot(&format!("draw {text}"));
+    let (mut scratch, mut volume, mut ends, mut most) = (Scratch::default(), 0.0, 0, 0);
+    let side = 30 * per_tenth;
+    let cell = 3.0 / f64::from(side);
+    for axis in 0..3 {
+        let [u, v] = [(axis + 1) % 3, (axis + 2) % 3].map(|k| DVec3::AXES[k]);
+        for i in 0..side * side {
+            let [x, y] = [i % side, i / side].map(|k| (f64::from(k) + 0.5) * cell - 1.0);
+            let ray = Ray::new(x * u + y * v - 3.0 * DVec3::AXES[axis], DVec3::AXES[axis]);
+            let spans = spans(&shot, &ray, &mut scratch);
+            volume += spans.iter().map(|s| s.interval().length()).sum::<f64>();
+            ends += 2 * spans.iter().count();
+            most = most.max(spans.iter().count());
+        }
+    }
+    (volume * cell * cell / 3.0, ends as f64 * cell * cell, most)
+}
+
+/// The areas too, and, over a million rays, no wall inside a union: what volumes cannot tell.
+#[test]
+fn b3_b4_b5_areas_are_exact_and_no_wall_is_inside() {
+    let cubes =
+        |at: &str| format!("(box([0, 0, 0], [1, 1, 1]) | box(size: 1).move({at}).move([0.5, 0.5, 0.5]))");
+    let corners = "(box([0, 0, 0], [1, 1, 1]) - box([0.3, 0.3, 0], [1.3, 1.3, 1]) - box([-0.3, -0.3, 0], [0.7, 0.7, 1]))";
+    let solids = [
+        ("B3, a face", "(box([0, 0, 0], [1, 1, 1]) | box([1, 0, 0], [2, 1, 1]))", 20, 2.0, 10.0),
+        ("B4, an edge", &cubes("[1, 1, 0]"), 3, 2.0, 12.0),
+        ("B4, a corner", &cubes("[1, 1, 1]"), 3, 2.0, 12.0),
+        ("B5", corners, 3, 0.18, 2.76),
+    ];
+    for (name, text, per_tenth, volume, area) in solids {
+        let have = measures(text, per_tenth);
+        assert!((have.0 - volume).abs() < 1e-9 && (have.1 - area).abs() < 1e-9, "{name}: {have:?}");
+        assert_eq!(have.2, 1, "{name}: spans on a ray");
+    }
+}
