@@ -6,7 +6,7 @@
 use super::bundle::Bundle;
 use super::object::{Core, Scratch};
 use super::room::Room;
-use super::slots::{Few, Hit, Turn};
+use super::slots::{Few, Turn};
 use super::spans::Boundary;
 use super::truth::Truth;
 use super::walk::Sight;
@@ -162,14 +162,14 @@ impl<'a> Look<'a> {
     fn take(&mut self, leaf: u32, has_place: bool) -> bool {
         let few = &mut self.room.few;
         let own = &self.core.tree.leaves()[leaf as usize];
-        few.fresh.clear();
+        let first = few.crossings.len();
         let local = own.place.ray_to_local(self.ray);
-        let answer = own.crossings(&local, Interval::ALL, self.scratch, &mut few.fresh);
+        let answer = own.crossings(&local, Interval::ALL, self.scratch, &mut few.crossings);
         debug_assert_eq!(answer.range, Interval::ALL, "closed forms answer for the whole line");
-        if few.fresh.is_empty() && !answer.inside && !has_place {
+        if few.crossings.len() == first && !answer.inside && !has_place {
             return true;
         }
-        few.keep(leaf, answer.inside)
+        few.keep(leaf, answer.inside, first)
     }
 
     /// Whether it is inside where these leaves are.
@@ -216,7 +216,7 @@ impl<'a> Look<'a> {
             return None;
         }
         let (mut mask, mut before) = (self.room.few.inside, 0);
-        for hit in self.room.few.hits().iter().take_while(|hit| hit.crossing.t <= self.range.lo) {
+        for hit in self.room.few.hits().iter().take_while(|hit| hit.t <= self.range.lo) {
             mask ^= 1 << hit.slot;
             before += 1;
         }
@@ -228,19 +228,19 @@ impl<'a> Look<'a> {
     fn change(&mut self, mut mask: u64, mut from: usize) -> Found<Option<Turn>> {
         let end = self.known.min(self.range.hi.next_up());
         let hits = self.room.few.hits();
-        if hits.get(from).is_none_or(|hit| end <= hit.crossing.t) {
+        if hits.get(from).is_none_or(|hit| end <= hit.t) {
             // Nothing happens up to there, so the truth there need not be known.
             return if self.known < f64::INFINITY { Found::More } else { Found::Answer(None) };
         }
         let was = self.inside(mask);
         while from < self.room.few.hit_count {
             let hits = self.room.few.hits();
-            let t = hits[from].crossing.t;
+            let t = hits[from].t;
             if end <= t {
                 break;
             }
             let (before, mut to) = (mask, from);
-            while to < hits.len() && hits[to].crossing.t == t {
+            while to < hits.len() && hits[to].t == t {
                 let bit = 1 << hits[to].slot;
                 if to != from && (mask ^ before) & bit != 0 {
                     // It comes and goes at once.
@@ -273,7 +273,8 @@ impl<'a> Look<'a> {
     /// The outward unit normal of the leaf of a crossing, world frame.
     #[inline]
     fn normal(&mut self, hit: usize) -> DVec3 {
-        let Hit { slot, crossing } = self.room.few.hits()[hit];
+        let hit = self.room.few.hits()[hit];
+        let (slot, crossing) = (hit.slot, *self.room.few.crossing(&hit));
         let leaf = &self.core.tree.leaves()[self.room.few.leaves[slot as usize] as usize];
         leaf.normal(&leaf.place.ray_to_local(self.ray), &crossing, self.scratch)
     }
@@ -285,15 +286,15 @@ impl<'a> Look<'a> {
         let met = self.met(turn);
         let normal = self.normal(met);
         let (core, hits) = (self.core, self.room.few.hits());
-        let t = hits[turn.from].crossing.t;
+        let t = hits[turn.from].t;
         let slope = self.ray.dir.dot(normal).abs();
         // No less than the lengths that the long way takes.
         let length = |v: DVec3| v.abs().element_sum();
         let (scale, point) = (core.bound.scale.max(length(self.ray.origin)), length(self.ray.at(t)));
         let reach = 2.0 * core.bound.shift + tolerance::cleanup(scale) + tolerance::cleanup(point);
         let window = 2.0 * reach / slope;
-        let before = turn.from == 0 || hits[turn.from - 1].crossing.t < t - window;
-        let behind = hits.get(turn.to).is_none_or(|next| t + window < next.crossing.t);
+        let before = turn.from == 0 || hits[turn.from - 1].t < t - window;
+        let behind = hits.get(turn.to).is_none_or(|next| t + window < next.t);
         if !before || !behind || !window.is_finite() {
             return Found::Unclear;
         }
@@ -307,7 +308,8 @@ impl<'a> Look<'a> {
         self.scratch.counts.ties += u64::from(tied);
         let owner = if tied { self.room.owner(self.core, turn) } else { met };
         let normal = if owner == met { normal } else { self.normal(owner) };
-        let (core, Hit { slot, crossing }) = (self.core, self.room.few.hits()[owner]);
+        let (core, hit) = (self.core, self.room.few.hits()[owner]);
+        let (slot, crossing) = (hit.slot, *self.room.few.crossing(&hit));
         let leaf = self.room.few.leaves[slot as usize];
         let within = if turn.entering { turn.after } else { turn.before };
         let filler = match core.tree.leaves()[leaf as usize].material {

@@ -79,9 +79,11 @@ const MIX: u64 = 0x9e37_79b9_7f4a_7c15;
 /// A crossing of one of the leaves met.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hit {
+    pub t: f64,
     /// Of the leaves met, which.
     pub slot: u32,
-    pub crossing: Crossing,
+    /// Its place in [`Few::crossings`].
+    pub crossing: u32,
 }
 
 /// Where truth changes: at crossings that all have one t.
@@ -108,8 +110,8 @@ pub(super) struct Few {
     pub shown: Vec<u32>,
     /// Bit i: whether the line comes from inside the leaf in slot i.
     pub inside: u64,
-    /// The last answer of a leaf.
-    pub fresh: Vec<Crossing>,
+    /// What the leaves have answered, in the order in which they were asked.
+    pub crossings: Vec<Crossing>,
     /// Ascending.
     hits: [Hit; MOST],
     pub hit_count: usize,
@@ -119,15 +121,14 @@ pub(super) struct Few {
 
 impl Default for Few {
     fn default() -> Few {
-        let no_hit = Hit { slot: 0, crossing: Crossing::exact(0.0, false, 0) };
         Few {
             leaves: [NO_LEAF; FEW],
             count: 0,
             hash: 0,
             shown: Vec::new(),
             inside: 0,
-            fresh: Vec::new(),
-            hits: [no_hit; MOST],
+            crossings: Vec::new(),
+            hits: [Hit { t: 0.0, slot: 0, crossing: 0 }; MOST],
             hit_count: 0,
             tables: Vec::new(),
         }
@@ -171,7 +172,7 @@ impl Room {
         let leaf = |hit: usize| self.few.leaves[self.few.hits[hit].slot as usize];
         let makes = |hit: usize| self.here.differs(&self.before, &core.tree, leaf(hit) as usize);
         let fits = |hit: usize| {
-            let entering = self.few.hits[hit].crossing.entering;
+            let entering = self.few.crossing(&self.few.hits[hit]).entering;
             core.tree.negated[leaf(hit) as usize].is_none_or(|not| (entering != not) == turn.entering)
         };
         let key = |hit: &usize| (leaves[leaf(*hit) as usize].key(), leaf(*hit));
@@ -206,6 +207,7 @@ impl Few {
         (self.leaves, self.count, self.hash) = ([NO_LEAF; FEW], 0, tree.wrapping_mul(MIX));
         (self.inside, self.hit_count) = (0, 0);
         self.shown.clear();
+        self.crossings.clear();
     }
 
     /// Makes a state that in which the leaves in these slots are inside.
@@ -221,25 +223,31 @@ impl Few {
         &self.hits[..self.hit_count]
     }
 
-    /// Keeps a leaf with its crossings in `fresh`; false where there is no room for it, or more crossings than closed forms
+    #[inline]
+    pub fn crossing(&self, hit: &Hit) -> &Crossing {
+        &self.crossings[hit.crossing as usize]
+    }
+
+    /// Keeps a leaf with its crossings, those from a place on; false where there is no room for it, or more crossings than closed forms
     /// have.
     #[inline]
-    pub fn keep(&mut self, leaf: u32, inside: bool) -> bool {
+    pub fn keep(&mut self, leaf: u32, inside: bool, first: usize) -> bool {
         let slot = self.count;
-        if slot == FEW || 2 < self.fresh.len() {
+        if slot == FEW || first + 2 < self.crossings.len() {
             return false;
         }
         self.leaves[slot] = leaf;
         self.hash = (self.hash ^ u64::from(leaf)).wrapping_mul(MIX);
         self.count += 1;
         self.inside |= u64::from(inside) << slot;
-        for crossing in &self.fresh {
+        for crossing in first..self.crossings.len() {
+            let t = self.crossings[crossing].t;
             let mut at = self.hit_count;
-            while 0 < at && crossing.t < self.hits[at - 1].crossing.t {
+            while 0 < at && t < self.hits[at - 1].t {
                 self.hits[at] = self.hits[at - 1];
                 at -= 1;
             }
-            self.hits[at] = Hit { slot: slot as u32, crossing: *crossing };
+            self.hits[at] = Hit { t, slot: slot as u32, crossing: crossing as u32 };
             self.hit_count += 1;
         }
         true
