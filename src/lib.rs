@@ -19,6 +19,9 @@
 //! counts multiples of its direction, which is never normalised, so `t` survives affine maps. Angles are
 //! radians, pixels are counted from the top left.
 
+// What the parser generator writes names it.
+extern crate alloc;
+
 pub mod check;
 pub mod cloud;
 pub mod csg;

@@ -161,12 +161,26 @@ impl Build {
         let at = self.place(&pair);
         let inner = pair.into_inner().next().ok_or_else(|| self.lost())?;
         let kind = match inner.as_rule() {
+            Rule::plain => return self.plain(inner),
             Rule::if_expr => ExprKind::Later("if"),
             Rule::for_expr => ExprKind::Later("for"),
             Rule::fn_expr => ExprKind::Later("fn"),
             _ => return self.operation(inner),
         };
         Ok(Expr { kind, at })
+    }
+
+    /// A number, or its negative, alone.
+    fn plain(&self, pair: Pair<Rule>) -> Parsed<Expr> {
+        let mut parts = pair.into_inner();
+        let first = parts.next().ok_or_else(|| self.lost())?;
+        if first.as_rule() != Rule::minus {
+            return self.atom(first);
+        }
+        let sign = self.place(&first);
+        let operand = self.atom(parts.next().ok_or_else(|| self.lost())?)?;
+        let at = sign.to(operand.at);
+        Ok(Expr { kind: ExprKind::Prefix(PrefixOp::Negate, sign, Box::new(operand)), at })
     }
 
     fn operation(&self, pair: Pair<Rule>) -> Parsed<Expr> {
