@@ -261,8 +261,8 @@ fn measures(text: &str, per_tenth: u32) -> (f64, f64, usize) {
             let ray = Ray::new(x * u + y * v - 3.0 * DVec3::AXES[axis], DVec3::AXES[axis]);
             let spans = spans(&shot, &ray, &mut scratch);
             volume += spans.iter().map(|s| s.interval().length()).sum::<f64>();
-            ends += 2 * spans.iter().count();
-            most = most.max(spans.iter().count());
+            ends += 2 * spans.len();
+            most = most.max(spans.len());
         }
     }
     (volume * cell * cell / 3.0, ends as f64 * cell * cell, most)
