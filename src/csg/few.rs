@@ -163,8 +163,9 @@ impl<'a> Look<'a> {
         let few = &mut self.room.few;
         let own = &self.core.tree.leaves()[leaf as usize];
         let first = few.crossings.len();
-        let local = own.place.ray_to_local(self.ray);
-        let answer = own.crossings(&local, Interval::ALL, self.scratch, &mut few.crossings);
+        let mut moved = None;
+        let local = own.place.local_ray(self.ray, &mut moved);
+        let answer = own.crossings(local, Interval::ALL, self.scratch, &mut few.crossings);
         debug_assert_eq!(answer.range, Interval::ALL, "closed forms answer for the whole line");
         if few.crossings.len() == first && !answer.inside && !has_place {
             return true;
@@ -276,7 +277,8 @@ impl<'a> Look<'a> {
         let hit = self.room.few.hits()[hit];
         let (slot, crossing) = (hit.slot, *self.room.few.crossing(&hit));
         let leaf = &self.core.tree.leaves()[self.room.few.leaves[slot as usize] as usize];
-        leaf.normal(&leaf.place.ray_to_local(self.ray), &crossing, self.scratch)
+        let mut moved = None;
+        leaf.normal(leaf.place.local_ray(self.ray, &mut moved), &crossing, self.scratch)
     }
 
     /// Whether nothing but what crosses at a change lies so near that the clean-up or the choice of an owner would look at it,

@@ -71,6 +71,12 @@ impl Placement {
         if self.is_identity { *ray } else { ray.transformed(&self.local_from_world) }
     }
 
+    /// The same without a copy: the ray itself, or what it is in the local frame, which is put into `moved`.
+    #[inline]
+    pub fn local_ray<'r>(&self, ray: &'r Ray, moved: &'r mut Option<Ray>) -> &'r Ray {
+        if self.is_identity { ray } else { moved.insert(ray.transformed(&self.local_from_world)) }
+    }
+
     /// A local normal as a unit normal of the world. Mirrors keep it outward.
     #[inline]
     pub fn normal_to_world(&self, normal: DVec3) -> DVec3 {

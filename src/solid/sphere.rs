@@ -57,8 +57,7 @@ impl Solid for Sphere {
     }
 
     /// |o + t d|^2 = r^2, for an ellipsoid in units of its radii. The discriminant is taken at the point nearest to the
-    /// centre, (r - m)(r + m), which keeps its digits however far the origin lies; the constant term as
-    /// (|o| - r)(|o| + r), which keeps them however near the surface.
+    /// centre, which keeps its digits however far the origin lies.
     fn crossings(&self, ray: &Ray, _: Interval, _: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
         if self.radii.min_element() <= 0.0 {
             return Answer::whole_line(false);
@@ -69,14 +68,12 @@ impl Solid for Sphere {
         }
         let a = d.length_squared();
         let b = o.dot(d);
-        let m = (o - (b / a) * d).length_squared();
-        if r * r < m * (1.0 - 8.0 * f64::EPSILON) {
-            // Beyond what the roundings of `m` can make of a line that touches: most lines, for no square root.
+        let foot = o - (b / a) * d;
+        let discriminant = -a * squares_apart(foot.length_squared(), r);
+        if discriminant.is_nan() || discriminant <= 0.0 {
             return Answer::whole_line(false);
         }
-        let m = m.sqrt();
-        let c = (o.length() - r) * (o.length() + r);
-        if let Some([t0, t1]) = roots::quadratic(a, b, c, a * (r - m) * (r + m)) {
+        if let Some([t0, t1]) = roots::quadratic(a, b, squares_apart(o.length_squared(), r), discriminant) {
             out.push(Crossing::exact(t0, true, 0));
             out.push(Crossing::exact(t1, false, 0));
         }
@@ -97,7 +94,24 @@ impl Solid for Sphere {
     }
 
     fn normal(&self, ray: &Ray, crossing: &Crossing, _: &mut Scratch) -> DVec3 {
-        let p = (ray.at(crossing.t) - self.center) / self.radii;
-        (p / self.radii).normalize()
+        let p = ray.at(crossing.t) - self.center;
+        if self.radii == DVec3::splat(self.radii.x) {
+            return p.normalize();
+        }
+        // In two steps, as a square may have no room.
+        (p / self.radii / self.radii).normalize()
     }
+}
+
+/// A length squared less r squared. Where they are near each other it is the product of sum and difference: that is exact
+/// where the length is, as on rays along an axis, so that touching and grazing lines are told apart; where they are not, no
+/// digit is lost by the short way.
+#[inline]
+fn squares_apart(squared: f64, r: f64) -> f64 {
+    let other = r * r;
+    if squared < 0.5 * other || 2.0 * other < squared {
+        return squared - other;
+    }
+    let length = squared.sqrt();
+    (length - r) * (length + r)
 }
