@@ -61,7 +61,7 @@ fn a_png_gives_back_the_values_shown() {
     assert_eq!(image.dimensions(), (37, 21));
     for (x, y, pixel) in image.enumerate_pixels() {
         let [r, g, b, _] = film().pixel(x, y);
-        assert_eq!(pixel.0, output::tone::display([r, g, b], -1.0, Tone::Reinhard), "{x} {y}");
+        assert_eq!(pixel.0, output::tone::Display::new(-1.0, Tone::Reinhard).of([r, g, b]), "{x} {y}");
     }
 }
 

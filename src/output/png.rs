@@ -13,8 +13,9 @@ use crate::shot::settings::Tone;
 pub fn write_png(film: &Film, exposure: f64, tone: Tone, sink: &mut dyn io::Write) -> io::Result<()> {
     let mut bytes = Vec::new();
     bytes.try_reserve_exact(film.rgba.len() * 3).map_err(|_| io::ErrorKind::OutOfMemory)?;
+    let display = tone::Display::new(exposure, tone);
     for [r, g, b, _] in &film.rgba {
-        bytes.extend(tone::display([*r, *g, *b], exposure, tone));
+        bytes.extend(display.of([*r, *g, *b]));
     }
     let mut remembering = Remembering { sink, failure: None };
     let encoded = PngEncoder::new(&mut remembering).write_image(

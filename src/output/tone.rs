@@ -4,43 +4,60 @@ use std::sync::LazyLock;
 
 use crate::shot::settings::Tone;
 
-/// A linear colour as 8-bit display values, after so many stops of exposure.
-pub fn display(color: [f32; 3], exposure: f64, tone: Tone) -> [u8; 3] {
-    let gain = exposure.exp2() as f32;
-    let color = color.map(|c| c * gain);
-    match tone {
-        Tone::None => color.map(srgb_from_linear),
-        Tone::Reinhard => reinhard(color).map(srgb_from_linear),
-        // A cast saturates and takes NaN to 0.
-        Tone::Agx => agx(color).map(|c| (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8),
+/// How linear colours become 8-bit display values.
+#[derive(Clone, Copy, Debug)]
+pub struct Display {
+    gain: f32,
+    tone: Tone,
+    codes: &'static Codes,
+}
+
+impl Display {
+    /// After so many stops of exposure.
+    pub fn new(exposure: f64, tone: Tone) -> Display {
+        Display { gain: exposure.exp2() as f32, tone, codes: &CODES }
+    }
+
+    /// What a display shows for a linear colour.
+    #[inline]
+    pub fn of(&self, color: [f32; 3]) -> [u8; 3] {
+        let color = color.map(|c| c * self.gain);
+        match self.tone {
+            Tone::None => color.map(|c| self.codes.of(c)),
+            Tone::Reinhard => reinhard(color).map(|c| self.codes.of(c)),
+            // A cast saturates and takes NaN to 0.
+            Tone::Agx => agx(color).map(|c| (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8),
+        }
     }
 }
 
-/// The 8-bit sRGB code nearest to a linear value, which is clamped to [0, 1]; of NaN it is 0.
-pub fn srgb_from_linear(linear: f32) -> u8 {
-    let c = linear.clamp(0.0, 1.0);
-    let cell = (c * CELLS as f32) as usize;
-    let mut code = CODES.first[cell.min(CELLS - 1)];
-    while code < u8::MAX && CODES.least[usize::from(code) + 1] <= c {
-        code += 1;
-    }
-    code
-}
-
-/// So many that nearly none has more than one step between codes in it: the curve begins with 12.92 * 255 to a unit.
+/// So many that none has more than one step between codes in it: the curve is steepest where it begins, 12.92 * 255 steps to
+/// a unit.
 const CELLS: usize = 4096;
 
 /// Where codes begin, so that no pixel costs a power.
+#[derive(Debug)]
 struct Codes {
-    /// The least linear value of each code.
-    least: [f32; 256],
+    /// The least linear value of each code, and one that none reaches.
+    least: [f32; 257],
     /// The code at the low end of each cell of [0, 1].
     first: [u8; CELLS],
 }
 
+impl Codes {
+    /// The 8-bit sRGB code nearest to a linear value, which is clamped to [0, 1]; of NaN it is 0.
+    #[inline]
+    fn of(&self, linear: f32) -> u8 {
+        let c = linear.clamp(0.0, 1.0);
+        let code = self.first[((c * CELLS as f32) as usize).min(CELLS - 1)];
+        code + u8::from(self.least[usize::from(code) + 1] <= c)
+    }
+}
+
 static CODES: LazyLock<Codes> = LazyLock::new(|| {
-    let mut least = [0.0; 256];
-    for (code, least) in least.iter_mut().enumerate().skip(1) {
+    let mut least = [0.0; 257];
+    least[256] = f32::INFINITY;
+    for (code, least) in least[..256].iter_mut().enumerate().skip(1) {
         let exact = linear_from_srgb((code as f64 - 0.5) / 255.0);
         let near = exact as f32;
         *least = if f64::from(near) < exact { near.next_up() } else { near };
@@ -103,6 +120,10 @@ fn times(rows: &[[f32; 3]; 3], v: [f32; 3]) -> [f32; 3] {
 mod tests {
     use super::*;
 
+    fn display(color: [f32; 3], exposure: f64, tone: Tone) -> [u8; 3] {
+        Display::new(exposure, tone).of(color)
+    }
+
     #[test]
     fn srgb_has_the_values_of_the_standard() {
         for (linear, code) in [(0.0, 0), (0.003_130_8, 10), (0.214_041_14, 128), (0.5, 188), (1.0, 255)] {
@@ -119,7 +140,7 @@ mod tests {
             let exact = 255.0 * curve(f64::from(c));
             // The standard's two constants for where the curve begins meet within 1e-7; nothing is said that near a half.
             if 1e-4 < (exact.fract() - 0.5).abs() {
-                assert_eq!(f64::from(srgb_from_linear(c)), exact.round(), "{c:e}");
+                assert_eq!(f64::from(CODES.of(c)), exact.round(), "{c:e}");
             }
         }
     }
