@@ -194,7 +194,7 @@ impl<'a> Look<'a> {
     /// The room's state with no leaf inside.
     fn state(&mut self) -> Truths {
         self.room.states_of(self.core);
-        self.room.here.reset(&self.core.tree);
+        self.room.here.reset(&self.core.tree, &self.core.outside);
         Truths::State(0)
     }
 

@@ -45,7 +45,7 @@ impl All {
         }
         let (leaves, count) =
             (std::array::from_fn(|slot| matter().nth(slot).unwrap_or(NO_LEAF)), matter().count());
-        let root = truths(tree, &leaves[..count], &mut outside.clone());
+        let root = truths(tree, outside, &leaves[..count], &mut outside.clone());
         Some(All { leaves, count, root })
     }
 
@@ -56,8 +56,8 @@ impl All {
 }
 
 /// Truth of the root for all states of some leaves, in an order in which one leaf changes at a time (Gray's).
-fn truths(tree: &Tree, leaves: &[u32], state: &mut State) -> u64 {
-    state.reset(tree);
+fn truths(tree: &Tree, outside: &State, leaves: &[u32], state: &mut State) -> u64 {
+    state.reset(tree, outside);
     let mut root = 0;
     for step in 0..1u64 << leaves.len() {
         let mask = step ^ step >> 1;
@@ -67,7 +67,7 @@ fn truths(tree: &Tree, leaves: &[u32], state: &mut State) -> u64 {
         }
         root |= u64::from(state.root() == Truth::Yes) << mask;
     }
-    state.reset(tree);
+    state.reset(tree, outside);
     root
 }
 
@@ -158,7 +158,7 @@ impl Room {
     fn make_table(&mut self, core: &Core, which: usize) -> Option<u64> {
         self.states_of(core);
         let Few { leaves, count, tables, .. } = &mut self.few;
-        tables[which].root = Some(truths(&core.tree, &leaves[..*count], &mut self.here));
+        tables[which].root = Some(truths(&core.tree, &core.outside, &leaves[..*count], &mut self.here));
         tables[which].root
     }
 
@@ -212,7 +212,7 @@ impl Few {
 
     /// Makes a state that in which the leaves in these slots are inside.
     fn put(&self, core: &Core, mask: u64, state: &mut State) {
-        state.reset(&core.tree);
+        state.reset(&core.tree, &core.outside);
         for slot in (0..self.count).filter(|slot| mask >> slot & 1 == 1) {
             state.set(&core.tree, self.leaves[slot] as usize, Truth::Yes);
         }

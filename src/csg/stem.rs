@@ -301,7 +301,7 @@ mod tests {
                     }
                 }
             }
-            state.reset(&tree);
+            state.reset(&tree, &State::outside(&tree));
             let outside = Plain::new(&tree, vec![Truth::No; count]);
             assert_eq!(state.root(), *outside.nodes.last().unwrap());
         }

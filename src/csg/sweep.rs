@@ -235,7 +235,7 @@ impl<'a> Sweep<'a> {
         self.meet(t);
         let tree = &self.core.tree;
         let mut state = std::mem::take(which(self.room));
-        state.reset(tree);
+        state.reset(tree, &self.core.outside);
         for met in 0..self.room.met.len() {
             if self.room.met[met].range.contains(t) && self.holds(met, t) {
                 state.set(tree, self.room.met[met].leaf as usize, Truth::Yes);
@@ -297,7 +297,7 @@ fn show(met: &mut Vec<Met>, queue: &mut Queue, range: Interval, leaf: u32, insid
 
 impl Drop for Sweep<'_> {
     fn drop(&mut self) {
-        self.room.state.reset(&self.core.tree);
+        self.room.state.reset(&self.core.tree, &self.core.outside);
         self.room.state.woken.clear();
         let skipped = self.room.met.len() as u64 - u64::from(self.room.asked);
         self.scratch.counts.leaves_skipped += skipped;

@@ -111,8 +111,18 @@ impl State {
         state
     }
 
-    /// Every leaf outside again.
-    pub fn reset(&mut self, tree: &Tree) {
+    /// Every leaf outside again, given the state that is so: it is copied where that costs less than to go back step by step.
+    pub fn reset(&mut self, tree: &Tree, outside: &State) {
+        /// Bytes that are copied in the time of one step back, about: twenty nanoseconds at 16 bytes each.
+        const A_STEP: usize = 320;
+        let bytes = self.leaves.len() + self.counts.len() * size_of::<Count>() + self.words.len() * 8;
+        if bytes < A_STEP * self.touched.len() {
+            self.leaves.copy_from_slice(&outside.leaves);
+            self.counts.copy_from_slice(&outside.counts);
+            self.words.clone_from(&outside.words);
+            self.touched.clear();
+            return;
+        }
         while let Some(leaf) = self.touched.pop() {
             self.put(tree, leaf as usize, Truth::No);
         }
