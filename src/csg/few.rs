@@ -35,6 +35,8 @@ pub(super) struct Look<'a> {
     /// Every leaf that begins before this has been asked.
     known: f64,
     truths: Truths,
+    /// The leaves that are inside in the room's state, once that is used.
+    state: Option<u64>,
 }
 
 /// Where truth of the root is read for states of the leaves asked.
@@ -42,10 +44,12 @@ pub(super) struct Look<'a> {
 enum Truths {
     /// Not known yet.
     Sought,
-    /// From this table.
-    Table(u64),
-    /// From the room's state, in which these leaves are inside.
-    State(u64),
+    /// From this table of all states.
+    Whole(u64),
+    /// From one of the room's, as far as that knows.
+    Table(usize),
+    /// From the room's state alone.
+    State,
 }
 
 impl<'a> Look<'a> {
@@ -60,14 +64,23 @@ impl<'a> Look<'a> {
     ) -> Option<Look<'a>> {
         let Scratch { solid: scratch, room } = scratch;
         room.few.clear(core.id);
-        let mut look = Look { core, ray, range, room, scratch, known: f64::INFINITY, truths: Truths::Sought };
+        let mut look = Look {
+            core,
+            ray,
+            range,
+            room,
+            scratch,
+            known: f64::INFINITY,
+            truths: Truths::Sought,
+            state: None,
+        };
         if let Some(few) = bundle.few(core) {
             look.room.walk.begin_at_end();
             return few.iter().all(|leaf| look.take(*leaf, false)).then_some(look);
         }
         match &core.few {
             Some(all) => {
-                look.truths = Truths::Table(all.root);
+                look.truths = Truths::Whole(all.root);
                 all.leaves().iter().all(|leaf| look.take(*leaf, true)).then_some(look)
             }
             None => {
@@ -150,7 +163,7 @@ impl<'a> Look<'a> {
             self.known = f64::INFINITY;
         }
         self.truths = match self.truths {
-            Truths::State(_) => self.truths,
+            Truths::State => Truths::State,
             _ => Truths::Sought,
         };
         true
@@ -180,32 +193,33 @@ impl<'a> Look<'a> {
             return self.core.outside.root() == Truth::Yes;
         }
         if let Truths::Sought = self.truths {
-            self.truths = match self.room.table(self.core) {
-                Some(root) => Truths::Table(root),
-                None => self.state(),
-            };
+            self.truths = self.room.table(self.core).map_or(Truths::State, Truths::Table);
         }
-        match self.truths {
-            Truths::Table(root) => root >> mask & 1 == 1,
-            Truths::State(_) | Truths::Sought => self.inside_by_state(mask),
+        let table = match self.truths {
+            Truths::Whole(root) => return root >> mask & 1 == 1,
+            Truths::Table(table) => table,
+            Truths::State | Truths::Sought => return self.inside_by_state(mask),
+        };
+        if let Some(told) = self.room.few.told(table, mask) {
+            return told;
         }
-    }
-
-    /// The room's state with no leaf inside.
-    fn state(&mut self) -> Truths {
-        self.room.states_of(self.core);
-        self.room.here.reset(&self.core.tree, &self.core.outside);
-        Truths::State(0)
+        let inside = self.inside_by_state(mask);
+        self.room.few.tell(table, mask, inside);
+        inside
     }
 
     fn inside_by_state(&mut self, mask: u64) -> bool {
-        let Truths::State(was) = self.truths else { return false };
+        let was = self.state.unwrap_or_else(|| {
+            self.room.states_of(self.core);
+            self.room.here.reset(&self.core.tree, &self.core.outside);
+            0
+        });
         let Room { few, here, .. } = &mut *self.room;
         for slot in (0..few.count).filter(|slot| (was ^ mask) >> slot & 1 == 1) {
             let truth = Truth::known(mask >> slot & 1 == 1);
             here.set(&self.core.tree, few.leaves[slot] as usize, truth);
         }
-        self.truths = Truths::State(mask);
+        self.state = Some(mask);
         here.root() == Truth::Yes
     }
 

@@ -12,20 +12,30 @@ use crate::solid::{Cost, Crossing};
 const FEW: usize = 16;
 /// Closed forms are convex: a line crosses each at most twice.
 const MOST: usize = 2 * FEW;
-/// A table of all states of so many leaves is a word.
-const TABLED: usize = 6;
+/// All states of so many leaves are the bits of a word.
+const IN_A_WORD: usize = 6;
+/// Of more leaves than this truth is not kept.
+const TABLED: usize = 8;
+const WORDS: usize = 1 << (TABLED - IN_A_WORD);
 
 /// The leaves that a ray meets, as they came; places past the last hold [`NO_LEAF`].
 type Leaves = [u32; FEW];
 const NO_LEAF: u32 = u32::MAX;
 
-/// Truth of an object's root for each state of some leaves, all others outside.
+/// Truth of an object's root for states of some leaves, all others outside, as far as it has been asked for.
 #[derive(Clone, Copy, Debug)]
 struct Table {
     tree: u64,
     leaves: Leaves,
-    /// Bit i: whether it is inside where the leaves are that have a bit in i; made when these leaves are met again.
-    root: Option<u64>,
+    /// Bit i: whether it is known for the leaves that have a bit in i, and what it is.
+    known: [u64; WORDS],
+    root: [u64; WORDS],
+}
+
+impl Table {
+    const fn of(tree: u64, leaves: Leaves) -> Table {
+        Table { tree, leaves, known: [0; WORDS], root: [0; WORDS] }
+    }
 }
 
 /// All leaves of an object that has few, all of closed form: their boxes would spare less than they cost.
@@ -40,7 +50,7 @@ impl All {
     /// `None` where there are too many, or others.
     pub fn new(tree: &Tree, costs: &[Cost], reaches: &[Aabb], outside: &State) -> Option<All> {
         let matter = || (0u32..).zip(reaches).filter(|(_, b)| !b.is_empty()).map(|(leaf, _)| leaf);
-        if matter().nth(TABLED).is_some() || matter().any(|leaf| costs[leaf as usize] != Cost::Closed) {
+        if matter().nth(IN_A_WORD).is_some() || matter().any(|leaf| costs[leaf as usize] != Cost::Closed) {
             return None;
         }
         let (leaves, count) =
@@ -136,30 +146,22 @@ impl Default for Few {
 }
 
 impl Room {
-    /// Truth of the root for all states of the leaves met, if they have been met before.
+    /// Where truth of the root is kept for the leaves met; `None` where they are too many.
     #[inline]
-    pub fn table(&mut self, core: &Core) -> Option<u64> {
-        if TABLED < self.few.count {
+    pub fn table(&mut self, core: &Core) -> Option<usize> {
+        let few = &mut self.few;
+        if TABLED < few.count {
             return None;
         }
-        if self.few.tables.is_empty() {
-            self.few.tables = vec![Table { tree: 0, leaves: [NO_LEAF; FEW], root: None }; TABLES];
+        if few.tables.is_empty() {
+            few.tables = vec![Table::of(0, [NO_LEAF; FEW]); TABLES];
         }
-        let which = (self.few.hash >> 56) as usize;
-        let table = &self.few.tables[which];
-        if table.tree == core.id && table.leaves == self.few.leaves {
-            return table.root.or_else(|| self.make_table(core, which));
+        let which = (few.hash >> 56) as usize;
+        let table = &mut few.tables[which];
+        if table.tree != core.id || table.leaves != few.leaves {
+            *table = Table::of(core.id, few.leaves);
         }
-        self.few.tables[which] = Table { tree: core.id, leaves: self.few.leaves, root: None };
-        None
-    }
-
-    #[cold]
-    fn make_table(&mut self, core: &Core, which: usize) -> Option<u64> {
-        self.states_of(core);
-        let Few { leaves, count, tables, .. } = &mut self.few;
-        tables[which].root = Some(truths(&core.tree, &core.outside, &leaves[..*count], &mut self.here));
-        tables[which].root
+        Some(which)
     }
 
     /// Of leaves that all cross where truth changes, the one that owns the face, by its place among the crossings: of those
@@ -202,6 +204,21 @@ impl Room {
 }
 
 impl Few {
+    /// Truth of the root where these leaves are inside, if a table knows.
+    #[inline]
+    pub fn told(&self, table: usize, mask: u64) -> Option<bool> {
+        let (word, bit) = ((mask >> IN_A_WORD) as usize, mask & 63);
+        let Table { known, root, .. } = &self.tables[table];
+        (known[word] >> bit & 1 == 1).then_some(root[word] >> bit & 1 == 1)
+    }
+
+    /// Keeps it.
+    pub fn tell(&mut self, table: usize, mask: u64, inside: bool) {
+        let (word, bit) = ((mask >> IN_A_WORD) as usize, mask & 63);
+        self.tables[table].known[word] |= 1 << bit;
+        self.tables[table].root[word] |= u64::from(inside) << bit;
+    }
+
     #[inline]
     pub fn clear(&mut self, tree: u64) {
         (self.leaves, self.count, self.hash) = ([NO_LEAF; FEW], 0, tree.wrapping_mul(MIX));
