@@ -31,13 +31,19 @@ pub fn median(values: impl Iterator<Item = f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
-/// Runs of a command that are timed together: the system counts in hundredths of a second.
-const TOGETHER: usize = 3;
 
-/// Processor seconds, user and system, of a command run by a shell; `None` where it fails or is not there.
-pub fn command_seconds(command: &str) -> Option<f64> {
+/// The system counts a command's time in hundredths of a second: one round lasts for this long.
+const TOGETHER: f64 = 0.5;
+
+/// How often to run a command in one round, by what it costs once; `None` where it fails or is not there.
+pub fn runs_a_round(command: &str) -> Option<usize> {
+    command_seconds(command, 1).map(|once| (TOGETHER / once.max(0.01)).ceil() as usize)
+}
+
+/// Processor seconds, user and system, of a command run by a shell so many times, for one; `None` where it fails.
+pub fn command_seconds(command: &str, times: usize) -> Option<f64> {
     let once = format!("{command} >/dev/null 2>&1 || exit 1; ");
-    let script = once.repeat(TOGETHER) + "times";
+    let script = once.repeat(times) + "times";
     let output = Command::new("sh").args(["-c", &script]).output().ok()?;
     if !output.status.success() {
         return None;
@@ -49,5 +55,5 @@ pub fn command_seconds(command: &str) -> Option<f64> {
         Some(60.0 * minutes.parse::<f64>().ok()? + seconds.parse::<f64>().ok()?)
     };
     let sum: Option<f64> = text.lines().nth(1)?.split_whitespace().map(seconds).sum();
-    sum.map(|sum| sum / TOGETHER as f64)
+    sum.map(|sum| sum / times as f64)
 }

@@ -5,10 +5,10 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::clock::{command_seconds, median};
+use crate::clock::{command_seconds, median, runs_a_round};
 use crate::table::Row;
 
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 7;
 
 fn folder() -> PathBuf {
     let folder = std::env::temp_dir().join("pss_csg_bench");
@@ -31,7 +31,9 @@ fn pss(scene: &Path, more: &str) -> String {
 
 /// Medians of commands run in turns, so that what disturbs one disturbs all; `None` for one that fails.
 fn seconds<const N: usize>(commands: [&str; N]) -> [Option<f64>; N] {
-    let rounds: Vec<[Option<f64>; N]> = (0..ROUNDS).map(|_| commands.map(command_seconds)).collect();
+    let runs = commands.map(runs_a_round);
+    let round = || std::array::from_fn(|i| command_seconds(commands[i], runs[i]?));
+    let rounds: Vec<[Option<f64>; N]> = (0..ROUNDS).map(|_| round()).collect();
     std::array::from_fn(|i| {
         rounds[0][i]?;
         Some(median(rounds.iter().filter_map(|round| round[i])))
