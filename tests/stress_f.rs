@@ -10,12 +10,18 @@ use glam::DVec3;
 use pss::cloud::{Cloud, SampleOptions, Samples};
 use pss::geom::Ray;
 use pss::num::hash::Stream;
-use pss::solid::point_set::{FieldScratch, Options, PointSet, Reach};
+use pss::solid::point_set::{CellOn, FieldScratch, Options, PointSet, Reach};
 use pss::solid::{Crossing, Scratch};
 use rayon::prelude::*;
 
-const GAUSSIAN: Options =
-    Options { gaussian: true, degree: 2, mixed: true, form: pss::mls::Form::Free, tolerance: 1e-12 };
+const GAUSSIAN: Options = Options {
+    gaussian: true,
+    degree: 2,
+    mixed: true,
+    form: pss::mls::Form::Free,
+    tolerance: 1e-12,
+    lead: pss::solid::point_set::Lead::Search,
+};
 
 fn sphere(n: usize) -> Vec<DVec3> {
     let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
@@ -417,10 +423,12 @@ fn f33_the_hierarchy_finds_the_spheres_that_a_search_through_all_finds() {
     let set = surface(&points, &normals, &Options::default());
     let samples = set.samples();
     let rays = if std::env::var_os("PSS_LONG").is_some() { 1_000_000 } else { 5000 };
-    let differ = |found: &mut Vec<Reach>, i: u64| {
+    let differ = |(cells, found): &mut (Vec<CellOn>, Vec<Reach>), i: u64| {
         let ray = chord(i, DVec3::ZERO, 1.5);
         let line = Ray::new(ray.origin, ray.dir.normalize());
-        samples.spheres_on(&line, found);
+        samples.cells_on(&line, cells);
+        found.clear();
+        cells.iter().for_each(|c| samples.spheres_of(c.cell as usize, &line, found));
         let meets = |k: &usize| {
             let (p, h) = (samples.points[*k], samples.widths[*k]);
             let middle = (p - line.origin).dot(line.dir);
@@ -430,7 +438,7 @@ fn f33_the_hierarchy_finds_the_spheres_that_a_search_through_all_finds() {
         found.sort_unstable();
         usize::from(!found.into_iter().eq((0..points.len()).filter(meets)))
     };
-    let differ: usize = (0..rays).into_par_iter().map_init(Vec::new, differ).sum();
+    let differ: usize = (0..rays).into_par_iter().map_init(Default::default, differ).sum();
     println!("{differ} of {rays} rays differ");
     assert_eq!(differ, 0);
 }

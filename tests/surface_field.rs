@@ -5,18 +5,30 @@ mod common;
 use common::Truth;
 use glam::DVec3;
 use pss::mls::{
-    AnyWay, Compact, Evaluator, Facing, Form, Gaussian, Guess, Neighbours, SameWay, Sample, Stray, Weight,
+    AnyWay, Blocks, Compact, Evaluator, Facing, Form, Gaussian, Guess, Neighbours, SameWay, Sample, Stray,
+    Weight,
 };
 use pss::num::hash::Stream;
 
 /// All samples, no tree, no cut.
-fn brute(points: &[DVec3], normals: &[DVec3], h: impl Fn(DVec3) -> f64, unit: f64) -> Neighbours {
-    let mut near = Neighbours::default();
-    near.reset(DVec3::ZERO, unit, f64::INFINITY, DVec3::Z);
-    for (p, n) in points.iter().zip(normals) {
-        near.push(*p, *n, 1.0 / h(*p));
+struct Brute(Blocks, Neighbours);
+
+fn brute(points: &[DVec3], normals: &[DVec3], h: impl Fn(DVec3) -> f64) -> Brute {
+    let widths: Vec<f64> = points.iter().map(|p| h(*p)).collect();
+    let blocks = Blocks::new(points, normals, &widths);
+    let all = Neighbours::everything(&blocks, DVec3::Z);
+    Brute(blocks, all)
+}
+
+impl Brute {
+    fn sample<W: Weight, A: Facing>(
+        &self,
+        evaluator: &Evaluator<W, A>,
+        at: DVec3,
+        guess: &Guess,
+    ) -> Result<Sample, Stray> {
+        evaluator.sample(&self.0, &mut self.1.clone(), at, guess)
     }
-    near
 }
 
 fn probes(truth: Truth, count: usize, within: f64) -> Vec<DVec3> {
@@ -34,11 +46,11 @@ fn check_gradient(weight: impl Weight, facing: impl Facing, degree: usize, form:
     let (points, normals) = Truth::Torus.cloud(1500);
     let h = 2.0 * (4.0 * 0.4 * std::f64::consts::PI.powi(2) / 1500.0).sqrt();
     // Widths that differ from sample to sample: the derivative must use each sample's own.
-    let near = brute(&points, &normals, |p| h * (1.0 + 0.2 * p.x), h);
+    let near = brute(&points, &normals, |p| h * (1.0 + 0.2 * p.x));
     let evaluator = Evaluator { weight, facing, degree, form };
     for p in probes(Truth::Torus, 200, 0.5 * h) {
         let guess = Guess { foot: p, outward: Truth::Torus.gradient(p), width: h };
-        let at = |p: DVec3| -> Result<Sample, Stray> { evaluator.sample(&near, p, &guess) };
+        let at = |p: DVec3| -> Result<Sample, Stray> { near.sample(&evaluator, p, &guess) };
         let sample = at(p).unwrap();
         let d = 2e-5 * h;
         let difference: DVec3 = DVec3::AXES
@@ -62,11 +74,11 @@ fn the_gradient_agrees_with_differences_for_every_weight_and_degree() {
 }
 
 /// r - t n - g n projected again, in widths: zero for a projection.
-fn defect(form: Form, r: DVec3, h: f64, near: &Neighbours) -> f64 {
+fn defect(form: Form, r: DVec3, h: f64, near: &Brute) -> f64 {
     let evaluator = Evaluator { weight: Compact, facing: AnyWay, degree: 2, form };
     let project = |r: DVec3| {
         let guess = Guess { foot: r, outward: Truth::Torus.gradient(r), width: h };
-        let f = evaluator.sample(near, r, &guess).unwrap();
+        let f = near.sample(&evaluator, r, &guess).unwrap();
         r - f.value * f.plane_normal
     };
     let once = project(r);
@@ -78,7 +90,7 @@ fn levins_plane_makes_a_projection_and_the_free_one_nearly() {
     let n = 6000;
     let (points, normals) = Truth::Torus.cloud(n);
     let h = 2.0 * (Truth::Torus.area() / n as f64).sqrt();
-    let near = brute(&points, &normals, |_| h, h);
+    let near = brute(&points, &normals, |_| h);
     let worst = |form: Form| {
         probes(Truth::Torus, 120, 0.4 * h).into_iter().map(|r| defect(form, r, h, &near)).fold(0.0, f64::max)
     };
@@ -96,13 +108,13 @@ fn f_stays_continuous_where_the_degree_falls() {
     let spacing = (4.0 * 0.4 * std::f64::consts::PI.powi(2) / 1500.0).sqrt();
     for (degree, factor) in [(1, 0.85), (2, 1.13), (3, 1.45), (4, 1.8)] {
         let h = factor * spacing;
-        let near = brute(&points, &normals, |_| h, h);
+        let near = brute(&points, &normals, |_| h);
         let evaluator = Evaluator { weight: Compact, facing: SameWay, degree, form: Form::Free };
         let (mut full, mut fallen) = (0, 0);
         let mut worst: f64 = 0.0;
         for (i, p) in probes(Truth::Torus, 300, 0.3 * h).into_iter().enumerate() {
             let guess = |p: DVec3| Guess { foot: p, outward: Truth::Torus.gradient(p), width: h };
-            let at = |p: DVec3| evaluator.sample(&near, p, &guess(p));
+            let at = |p: DVec3| near.sample(&evaluator, p, &guess(p));
             let along = normals[i].any_orthonormal_vector();
             // A walk of a tenth of a width in 200 steps.
             let step = 0.1 * h / 200.0;

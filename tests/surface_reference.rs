@@ -203,7 +203,8 @@ fn f_itself_agrees_with_the_reference_for_every_plane_weight_and_degree() {
             // Levin's plane of samples that weigh by the way they face is no eigenvector, so the reference has it for all alike.
             for mixed in [form == Form::Levin, true] {
                 for degree in 0..=4 {
-                    let options = Options { gaussian, mixed, degree, tolerance: 1e-13, form };
+                    let options =
+                        Options { gaussian, mixed, degree, tolerance: 1e-13, form, ..Options::default() };
                     // 15 coefficients fade below 22 effective samples, of which the reference knows nothing: wider weights then.
                     let wider = if degree == 4 { 1.2 } else { 1.0 };
                     let usual = surface(&points, &normals, &options);

@@ -24,6 +24,9 @@ const CREASE: f64 = 2.0;
 /// Samples whose spacings are asked for the local one: at a rim the own spacing is 1.4 times too large.
 const AROUND: usize = 30;
 
+/// So many nearest samples are asked first: usually they leave no gap.
+const FEW: usize = 8;
+
 /// Rims of fewer samples are chance: an empty disc in a random sampling touches three to five, a round hole of
 /// twice its size has two dozen around it.
 const LEAST_RIM: usize = 10;
@@ -49,7 +52,13 @@ pub struct Hole {
 /// Edelsbrunner and Muecke 1994), linked where one disc may touch both.
 pub fn holes(samples: &Samples) -> Vec<Hole> {
     let tree = Neighbours::new(&samples.points);
+    let least = DISC * samples.spacing.iter().copied().fold(f64::INFINITY, f64::min);
     let touch = |(near, arcs): &mut (Vec<Near>, Vec<[f64; 2]>), i: usize| {
+        // Discs that a few near samples fill already, though no disc here is smaller: nearly all.
+        tree.nearest(samples.points[i], FEW + 1, near);
+        if !has_gap(samples, i, near, least, arcs) {
+            return None;
+        }
         let radius = disc_radius(samples, &tree, i, near);
         tree.within(samples.points[i], 2.0 * radius, near);
         is_open(samples, i, near, radius, arcs).then_some((i as u32, radius))
@@ -135,6 +144,12 @@ fn is_open(samples: &Samples, i: usize, near: &[Near], radius: f64, arcs: &mut V
     if near.iter().any(|n| n.distance_squared <= crease && faces_away(n)) {
         return false;
     }
+    has_gap(samples, i, near, radius, arcs)
+}
+
+/// Whether the arcs of these samples leave a gap.
+fn has_gap(samples: &Samples, i: usize, near: &[Near], radius: f64, arcs: &mut Vec<[f64; 2]>) -> bool {
+    let normal = samples.normals[i];
     let (u, v) = tangents(normal);
     arcs.clear();
     for n in near.iter().map(|n| n.index as usize).filter(|&n| n != i && 0.0 < samples.normals[n].dot(normal))

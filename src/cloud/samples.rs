@@ -69,6 +69,8 @@ pub struct Samples {
     pub opposed: f64,
     /// Normals of the file that were turned singly.
     pub turned: usize,
+    /// Whether normals were estimated from the positions.
+    pub estimated: bool,
     /// What was dropped or mended on the way, one sentence each.
     pub notes: Vec<String>,
 }
@@ -89,11 +91,12 @@ impl Samples {
         let widths = spacing::capped(&points, &spacing, widths);
         let scene = Scene { points: &points, table: &table, widths: &widths };
         let given = normals.filter(|_| options.normals == NormalSource::File);
+        let estimated = given.is_none();
         let oriented = given.map_or_else(|| normals::from_points(scene), |n| normals::from_file(scene, n));
         let Oriented { normals, opposed, turned, notes: more } = oriented;
         notes.extend(more);
         let widths = widths.iter().map(|h| options.width.unwrap_or(*h) * options.smoothing).collect();
-        Ok(Samples { points, normals, widths, spacing, colors, opposed, turned, notes })
+        Ok(Samples { points, normals, widths, spacing, colors, opposed, turned, estimated, notes })
     }
 
     /// How many there are.

@@ -36,6 +36,7 @@ impl Samples {
             colors: self.colors.as_ref().map(|c| pick(c, keep)),
             opposed: self.opposed,
             turned: self.turned,
+            estimated: self.estimated,
             notes: self.notes.clone(),
         }
     }

@@ -2,6 +2,7 @@
 //! the things below it. What bounds them and what is looked for is the caller's.
 
 use std::cmp::Ordering;
+use std::ops::Range;
 
 use rayon::join;
 
@@ -48,7 +49,22 @@ const DEEPEST: usize = 64;
 impl<B: Copy + Send> Halves<B> {
     /// Puts things in the order of leaves of at most `leaf`; `O(n log n)`, the same for any number of threads.
     pub fn new<T: Send>(things: &mut [T], leaf: usize, how: &impl Halving<T, Bound = B>) -> Halves<B> {
-        Halves { nodes: if things.is_empty() { Vec::new() } else { build(things, 0, leaf, how) } }
+        Halves::whole(things, Leaves { most: leaf, multiple: 1 }, how)
+    }
+
+    /// The same with every leaf full but the last one, so that leaf k begins with thing k * `leaf`; and up to `together` things,
+    /// a power of two of leaves, so many leaves that begin at a multiple of their number are a node.
+    pub fn full<T: Send>(
+        things: &mut [T],
+        leaf: usize,
+        together: usize,
+        how: &impl Halving<T, Bound = B>,
+    ) -> Halves<B> {
+        Halves::whole(things, Leaves { most: leaf, multiple: together }, how)
+    }
+
+    fn whole<T: Send>(things: &mut [T], leaves: Leaves, how: &impl Halving<T, Bound = B>) -> Halves<B> {
+        Halves { nodes: if things.is_empty() { Vec::new() } else { build(things, 0, leaves, how) } }
     }
 
     /// The bound of everything.
@@ -58,7 +74,13 @@ impl<B: Copy + Send> Halves<B> {
 
     /// Shows the things of every leaf all of whose bounds, from the root down, `meets` says yes to; in their order.
     #[inline(always)]
-    pub fn visit(&self, mut meets: impl FnMut(&B) -> bool, mut show: impl FnMut(u32)) {
+    pub fn visit(&self, meets: impl FnMut(&B) -> bool, mut show: impl FnMut(u32)) {
+        self.visit_leaves(meets, |leaf| leaf.for_each(&mut show));
+    }
+
+    /// Shows every such leaf as the range of its things.
+    #[inline(always)]
+    pub fn visit_leaves(&self, mut meets: impl FnMut(&B) -> bool, mut show: impl FnMut(Range<u32>)) {
         let mut stack = [0u32; DEEPEST];
         let mut depth = usize::from(!self.nodes.is_empty());
         while 0 < depth {
@@ -73,25 +95,49 @@ impl<B: Copy + Send> Halves<B> {
                 stack[depth + 1] = index + 1;
                 depth += 2;
             } else {
-                (node.start..node.start + node.count).for_each(&mut show);
+                show(node.start..node.start + node.count);
             }
         }
     }
 }
 
+/// How many things a leaf holds at most, and of what number the things before a half are a multiple, while it is less than
+/// what is halved.
+#[derive(Clone, Copy)]
+struct Leaves {
+    most: usize,
+    multiple: usize,
+}
+
+impl Leaves {
+    /// How many of so many things are the first half.
+    fn half(self, count: usize) -> usize {
+        let mut multiple = self.multiple;
+        while count <= multiple && self.most < multiple {
+            multiple /= 2;
+        }
+        (count / 2).next_multiple_of(multiple)
+    }
+}
+
 /// Nodes of a subtree; `first` is the place of its things in the whole order.
-fn build<T: Send, H: Halving<T>>(things: &mut [T], first: u32, leaf: usize, how: &H) -> Vec<Node<H::Bound>> {
+fn build<T: Send, H: Halving<T>>(
+    things: &mut [T],
+    first: u32,
+    leaves: Leaves,
+    how: &H,
+) -> Vec<Node<H::Bound>> {
     let node = Node { bound: how.bound(things), start: first, count: things.len() as u32 };
-    if things.len() <= leaf {
+    if things.len() <= leaves.most {
         how.settle(things);
         return vec![node];
     }
     let axis = how.axis(things, &node.bound);
-    let half = things.len() / 2;
+    let half = leaves.half(things.len());
     things.select_nth_unstable_by(half, |a, b| how.order(axis, a, b));
     let (low, high) = things.split_at_mut(half);
-    let build_low = |low: &mut [T]| build(low, first, leaf, how);
-    let build_high = |high: &mut [T]| build(high, first + half as u32, leaf, how);
+    let build_low = |low: &mut [T]| build(low, first, leaves, how);
+    let build_high = |high: &mut [T]| build(high, first + half as u32, leaves, how);
     let (left, right) = if PARALLEL < low.len() {
         join(|| build_low(low), || build_high(high))
     } else {

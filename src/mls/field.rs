@@ -2,12 +2,14 @@
 
 use glam::DVec3;
 
+use super::blocks::{Blocks, Near};
 use super::gradient::{Answers, gradient};
 use super::levin;
 use super::neighbours::Neighbours;
-use super::plane::{Jet, Plane, Straightness, settle, start};
+use super::plane::{Jet, Plane, SLACK, Straightness, settle, start, weighing};
 use super::polynomial::fit;
-use super::{AnyWay, Facing, MAX_DEGREE, Weight};
+use super::weight::OneWay;
+use super::{Facing, MAX_DEGREE, Weight};
 
 /// Why a point has no projection. A failure that belongs to the method, not an error of the program.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
@@ -97,6 +99,8 @@ pub struct Evaluator<W, A> {
     pub form: Form,
 }
 
+/// How far q may lie from the point that the samples were weighed about, in widths at r, at the second attempt.
+const FAR_SLACK: f64 = 1.0;
 /// The plane must lie within this many local units of the point: past sqrt 2 the energy of a flat neighbourhood
 /// has no minimum left, and noise adds a little.
 const TUBE: f64 = 1.5;
@@ -116,56 +120,92 @@ impl<W: Weight, A: Facing> Evaluator<W, A> {
     ///
     /// The search for the plane starts from the samples' own normals about `foot`, a point near the surface that is a
     /// function of `at` alone, as is the outward normal there; so the branch of the local minimum depends on the point
-    /// alone, never on an earlier search. The local width bounds the tube. `near` must hold all
-    /// samples whose support reaches the ball of [`Neighbours::reach`] about its origin; where q or the foot lie
-    /// beyond, the answer is [`Stray::OutOfReach`].
-    pub fn sample(&self, near: &Neighbours, at: DVec3, guess: &Guess) -> Result<Sample, Stray> {
+    /// alone, never on an earlier search. The local width bounds the tube. `near` must hold every block with a sample
+    /// whose support reaches the point, the foot, or q: where one lies beyond, the answer is [`Stray::OutOfReach`].
+    pub fn sample(
+        &self,
+        blocks: &Blocks,
+        near: &mut Neighbours,
+        at: DVec3,
+        guess: &Guess,
+    ) -> Result<Sample, Stray> {
         if A::VARIES && ALIGNED <= near.least {
             // All normals lie within 60 degrees of one direction: while the plane's stays within 24 of it too, from the
             // start of the search to its end, every factor of facing is exactly one, and need not be computed. Where it
             // leaves, the whole search is made again, so that its end does not depend on what was gathered.
             let Evaluator { weight, degree, form, .. } = *self;
-            let plain = Evaluator { weight, facing: AnyWay, degree, form };
-            let mut straight = 1.0;
-            let answer = plain.search(near, at, guess, &mut straight);
-            if STRAIGHT <= straight || answer == Err(Stray::OutOfReach) {
+            let plain = Evaluator { weight, facing: OneWay, degree, form };
+            let mut straight = Straightness { outward: near.outward, least: 1.0 };
+            let answer = plain.search(blocks, near, at, guess, &mut straight);
+            if STRAIGHT <= straight.least || answer == Err(Stray::OutOfReach) {
                 return answer;
             }
         }
-        self.search(near, at, guess, &mut 1.0)
+        self.search(blocks, near, at, guess, &mut Straightness { outward: near.outward, least: 1.0 })
     }
 
     fn search(
         &self,
-        near: &Neighbours,
+        blocks: &Blocks,
+        neighbours: &mut Neighbours,
         at: DVec3,
         guess: &Guess,
         straight: &mut Straightness,
     ) -> Result<Sample, Stray> {
-        let Guess { foot, outward, width } = *guess;
-        let local = |p: DVec3| (p - near.origin) / near.unit;
-        let (r, foot) = (local(at), local(foot));
-        let k = width / near.unit;
-        if near.reach < foot.length() {
+        if !neighbours.reaches(at) || !neighbours.reaches(guess.foot) {
             return Err(Stray::OutOfReach);
         }
-        let begin = start(self.weight, self.facing, near, r, foot, outward, straight)?;
+        let mut active = std::mem::take(&mut neighbours.active);
+        let near = neighbours.listed(blocks);
+        let (unit, per_unit) = (blocks.unit(), blocks.per_unit());
+        let (r, k) = (at * per_unit, guess.width * per_unit);
+        let local = Guess { foot: guess.foot * per_unit, width: k, ..*guess };
+        let answer = start(self.weight, self.facing, near, r, local, straight, &mut active).and_then(
+            |(begin, about)| {
+                let whole = |slack: f64| neighbours.reaches_ball(about * unit, slack * guess.width);
+                if !whole(SLACK) {
+                    return Err(Stray::OutOfReach);
+                }
+                let few = Near { list: &active, ..near };
+                let answer = self.from(few, r, k, begin, straight);
+                if answer.is_ok_and(|(q, _)| (q - about).length() <= SLACK * k) {
+                    return answer.map(|(_, sample)| sample);
+                }
+                // The search went, or ended, where blocks were left out that weigh.
+                if !whole(FAR_SLACK) {
+                    return Err(Stray::OutOfReach);
+                }
+                weighing(self.weight, near, about, FAR_SLACK * k, &mut active);
+                let (q, sample) = self.from(Near { list: &active, ..near }, r, k, begin, straight)?;
+                if (q - about).length() <= FAR_SLACK * k { Ok(sample) } else { Err(Stray::Outside) }
+            },
+        );
+        neighbours.active = active;
+        answer
+    }
+
+    /// F from a first plane on; q too, in units.
+    fn from(
+        &self,
+        near: Near,
+        r: DVec3,
+        k: f64,
+        begin: Plane,
+        straight: &mut Straightness,
+    ) -> Result<(DVec3, Sample), Stray> {
         let (mut plane, jet) = settle(self.weight, self.facing, near, r, k, begin, straight)?;
         if self.form == Form::Levin {
             plane = levin::settle(self.weight, self.facing, near, r, &plane)?;
-            *straight = straight.min(-plane.n.dot(near.outward));
+            straight.pass(-plane.n);
         }
         if TUBE * k < plane.t.abs() {
             return Err(Stray::Outside);
         }
-        if near.reach < (r + plane.t * plane.n).length() {
-            return Err(Stray::OutOfReach);
-        }
-        self.finish(near, r, k, &plane, &jet)
+        Ok((r + plane.t * plane.n, self.finish(near, r, k, &plane, &jet)?))
     }
 
     /// Polynomial, orientation and gradient at a settled plane; `k` is the width at the point, local units.
-    fn finish(&self, near: &Neighbours, r: DVec3, k: f64, plane: &Plane, jet: &Jet) -> Result<Sample, Stray> {
+    fn finish(&self, near: Near, r: DVec3, k: f64, plane: &Plane, jet: &Jet) -> Result<Sample, Stray> {
         // The Hessian's basis, turned with the last step.
         let n = plane.n;
         let e1 = (jet.basis[0] - n * n.dot(jet.basis[0])).normalize();
@@ -190,11 +230,11 @@ impl<W: Weight, A: Facing> Evaluator<W, A> {
         // n points into the solid where the outward normals stand against it.
         let sign = -fit.vote.signum();
         Ok(Sample {
-            value: sign * (plane.t + fit.c[0]) * near.unit,
+            value: sign * (plane.t + fit.c[0]) * near.all.unit(),
             gradient: sign * inward,
             plane_normal: -sign * n,
             fit_normal: -sign * (n - fit.c[1] * basis[0] - fit.c[2] * basis[1]).normalize(),
-            foot: near.origin + (r + plane.t * n) * near.unit,
+            foot: (r + plane.t * n) * near.all.unit(),
             away: -(fit.drift[0] * basis[0] + fit.drift[1] * basis[1]).normalize_or_zero(),
             drift: (fit.drift[0] * fit.drift[0] + fit.drift[1] * fit.drift[1]).sqrt() / k,
             kept: fit.kept,

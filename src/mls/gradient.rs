@@ -14,7 +14,7 @@
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use glam::{DMat3, DVec3};
 
-use super::neighbours::Neighbours;
+use super::blocks::Near;
 use super::plane::Plane;
 use super::polynomial::{Fit, evaluate};
 use super::{Facing, MAX_DEGREE, Stray, Weight};
@@ -48,7 +48,7 @@ struct Forms {
 pub(super) fn gradient<W: Weight, A: Facing>(
     weight: W,
     _: A,
-    near: &Neighbours,
+    near: Near,
     r: DVec3,
     plane: &Plane,
     answers: Answers,
@@ -66,7 +66,7 @@ pub(super) fn gradient<W: Weight, A: Facing>(
         Answers::Minimum(hessian) => {
             // A minimum so flat that this many digits are lost is none.
             const PIVOT: f64 = 1e-8;
-            let factor = Cholesky::new(hessian, 3, PIVOT).ok_or(Stray::Saddle)?;
+            let factor = Cholesky::new(hessian, PIVOT).ok_or(Stray::Saddle)?;
             std::array::from_fn(|j| factor.solve(&[-f.m_n[0][j], -f.m_n[1][j], -f.m_t[j]]))
         }
         Answers::Given(response) => response.to_cols_array_2d(),
@@ -81,7 +81,7 @@ pub(super) fn gradient<W: Weight, A: Facing>(
 
 fn forms<W: Weight, A: Facing, const D: usize>(
     weight: W,
-    near: &Neighbours,
+    near: Near,
     r: DVec3,
     plane: &Plane,
     basis: [DVec3; 2],
@@ -94,7 +94,7 @@ fn forms<W: Weight, A: Facing, const D: usize>(
 fn forms_in<S: Simd, W: Weight, A: Facing, const D: usize>(
     simd: S,
     weight: W,
-    near: &Neighbours,
+    near: Near,
     r: DVec3,
     plane: &Plane,
     [e1, e2]: [DVec3; 2],
@@ -106,7 +106,7 @@ fn forms_in<S: Simd, W: Weight, A: Facing, const D: usize>(
     let (mut un, mut vn) = (zero, zero);
     let (mut tu, mut tv, mut tn) = (zero, zero, zero);
     let (mut gx, mut gy, mut gz, mut h1, mut h2) = (zero, zero, zero, zero, zero);
-    for block in 0..near.blocks() {
+    for block in 0..near.len() {
         let (p, ih2) = near.block(simd, block);
         let d = p.minus(r);
         let (u, v, s) = (d.dot(e1), d.dot(e2), d.dot(n) - t);

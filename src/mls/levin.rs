@@ -24,7 +24,7 @@
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use glam::{DMat3, DVec3};
 
-use super::neighbours::Neighbours;
+use super::blocks::Near;
 use super::plane::Plane;
 use super::{Facing, Stray, Weight};
 use crate::num::lanes::{Lanes, sum};
@@ -59,7 +59,7 @@ const FARTHEST: f64 = 0.5;
 pub(super) fn settle<W: Weight, A: Facing>(
     weight: W,
     _: A,
-    near: &Neighbours,
+    near: Near,
     r: DVec3,
     start: &Plane,
 ) -> Result<Plane, Stray> {
@@ -87,7 +87,7 @@ pub(super) fn settle<W: Weight, A: Facing>(
 /// The system at a plane in a tangent basis.
 pub(super) fn system<W: Weight, A: Facing>(
     weight: W,
-    near: &Neighbours,
+    near: Near,
     r: DVec3,
     plane: &Plane,
     basis: [DVec3; 2],
@@ -99,7 +99,7 @@ pub(super) fn system<W: Weight, A: Facing>(
 fn system_in<S: Simd, W: Weight, A: Facing>(
     simd: S,
     weight: W,
-    near: &Neighbours,
+    near: Near,
     r: DVec3,
     plane: &Plane,
     [e1, e2]: [DVec3; 2],
@@ -114,7 +114,7 @@ fn system_in<S: Simd, W: Weight, A: Facing>(
     // By r: the parts along x and along n, of K by rows, of T.
     let mut k_r = [[zero; 3]; 2];
     let mut t_r = [zero; 3];
-    for block in 0..near.blocks() {
+    for block in 0..near.len() {
         let (p, ih2) = near.block(simd, block);
         let d = p.minus(r);
         let x = [d.dot(e1), d.dot(e2), d.dot(n) - t];

@@ -12,6 +12,7 @@
 //! weights. Then F(r) = t + g(0, 0), and the surface is F = 0. Here n points **into** the solid, so F is positive
 //! outside and grad F points outward.
 
+mod blocks;
 mod field;
 mod gradient;
 mod levin;
@@ -20,6 +21,7 @@ mod plane;
 mod polynomial;
 mod weight;
 
+pub use blocks::Blocks;
 pub use field::{Evaluator, Form, Guess, Sample, Stray};
 pub use neighbours::Neighbours;
 pub use weight::{AnyWay, Compact, Facing, Gaussian, SameWay, Weight};

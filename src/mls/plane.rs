@@ -25,8 +25,8 @@
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use glam::{DMat3, DVec3};
 
-use super::neighbours::Neighbours;
-use super::{AnyWay, Facing, Stray, Weight};
+use super::blocks::Near;
+use super::{AnyWay, Facing, Guess, Stray, Weight};
 use crate::num::cholesky::Cholesky;
 use crate::num::eigen::symmetric3;
 use crate::num::lanes::{Lanes, Lanes3, sum};
@@ -61,12 +61,25 @@ const MAX_HALVINGS: usize = 12;
 const MAX_STEPS: usize = 24;
 /// A step below this many local units (radians) leaves an error of its square in F, below rounding, and of this size in
 /// the Hessian that the gradient of F is made with.
-const LAST_STEP: f64 = 1e-7;
+const LAST_STEP: f64 = 1e-6;
 /// The largest single step, radians and widths at the point: the quadratic model is good for no more.
 const LONGEST_STEP: f64 = 0.5;
 
-/// How near a search stayed to the outward normal that its neighbours were gathered with: the least cosine.
-pub(super) type Straightness = f64;
+/// How near a search stays to the outward normal that its neighbours were gathered with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Straightness {
+    pub outward: DVec3,
+    /// The least cosine so far.
+    pub least: f64,
+}
+
+impl Straightness {
+    /// The search compares samples with this outward unit normal.
+    #[inline(always)]
+    pub fn pass(&mut self, outward: DVec3) {
+        self.least = self.least.min(outward.dot(self.outward));
+    }
+}
 
 /// The weight that decides which side r belongs to is so much narrower, as a factor on squared distances: its support
 /// still holds the whole trust sphere's radius.
@@ -78,27 +91,33 @@ const CLEAR: f64 = 0.2;
 /// surface next to r, across their mean normal. Which way that is a narrower weight about r itself decides, so that the
 /// nearer side of a thin wall wins and at its rim both sides together; where normals cancel, `outward` decides.
 ///
-/// `straight` is lowered to the cosine of the direction that samples were compared with.
+/// Returned with the point about which the samples were weighed; `active` gets the blocks that weigh about it, or within
+/// [`SLACK`] of it.
 pub(super) fn start<W: Weight, A: Facing>(
     weight: W,
     _: A,
-    near: &Neighbours,
+    near: Near,
     r: DVec3,
-    foot: DVec3,
-    outward: DVec3,
+    Guess { foot, outward, width }: Guess,
     straight: &mut Straightness,
-) -> Result<Plane, Stray> {
+    active: &mut Vec<u32>,
+) -> Result<(Plane, DVec3), Stray> {
+    let narrow = About { point: r, narrow: NARROW, slack: 0.0, outward };
     let (sum, centroid, normal) =
-        dispatch!(Level::new(), simd => means::<_, W, AnyWay>(simd, weight, near, r, NARROW, outward));
+        dispatch!(Level::new(), simd => means::<_, W, AnyWay>(simd, weight, near, narrow, |_| ()));
     let (foot, outward) = if CLEAR * sum < normal.length() {
         let outward = normal.normalize();
         (r + outward * outward.dot(centroid / sum), outward)
     } else {
         (foot, outward)
     };
-    *straight = straight.min(outward.dot(near.outward));
+    straight.pass(outward);
+    active.clear();
+    let listed = |block| active.push(near.list[block]);
+    let wide = About { point: foot, narrow: 1.0, slack: SLACK * width, outward };
     let (sum, centroid, normal) =
-        dispatch!(Level::new(), simd => means::<_, W, A>(simd, weight, near, foot, 1.0, outward));
+        dispatch!(Level::new(), simd => means::<_, W, A>(simd, weight, near, wide, listed));
+    let near = Near { list: active, ..near };
     // Below this share of one full sample nothing is near: the foot lies outside every support.
     const NOTHING: f64 = 1e-6;
     if sum < NOTHING {
@@ -112,26 +131,51 @@ pub(super) fn start<W: Weight, A: Facing>(
     } else {
         principal(weight, near, foot, centroid, mean)
     };
-    Ok(Plane { n, t: n.dot(foot + centroid - r) })
+    Ok((Plane { n, t: n.dot(foot + centroid - r) }, foot))
 }
 
-/// The sum of the weights about a point, and of the weighted positions from it and normals.
+/// How far from the point about which blocks were listed they may be asked, in widths at the point r: nearly always enough.
+pub(super) const SLACK: f64 = 0.15;
+/// A share d by which the squared support grows, so that (support h + slack)^2 <= (1 + d) support^2 h^2 + (1 + 1/d) slack^2
+/// can be asked without a root.
+const WIDER: f64 = 0.1;
+
+/// How samples are weighed.
+#[derive(Clone, Copy)]
+struct About {
+    point: DVec3,
+    /// Times the squared distances.
+    narrow: f64,
+    slack: f64,
+    /// What they are compared with.
+    outward: DVec3,
+}
+
+/// The sum of the weights about a point, and of the weighted positions from it and normals. Shows the blocks of which a
+/// sample may weigh about a point at most `slack` away.
 #[inline(always)]
 fn means<S: Simd, W: Weight, A: Facing>(
     simd: S,
     weight: W,
-    near: &Neighbours,
-    r: DVec3,
-    narrow: f64,
-    outward: DVec3,
+    near: Near,
+    About { point, narrow, slack, outward }: About,
+    mut weighs: impl FnMut(usize),
 ) -> (f64, DVec3, DVec3) {
+    let reach = Lanes::splat(simd, weight.support() * (1.0 + WIDER));
+    let slack = slack * slack * (1.0 + 1.0 / WIDER);
     let mut total = Lanes::splat(simd, 0.0);
     let (mut centroid, mut normal) = (Lanes3::zero(simd), Lanes3::zero(simd));
-    for block in 0..near.blocks() {
+    for block in 0..near.len() {
         let (p, ih2) = near.block(simd, block);
         let m = near.normals(simd, block);
-        let d = p.minus(r);
-        let mut w = weight.value(simd, d.length_squared() * ih2 * narrow);
+        let d = p.minus(point);
+        let square = d.length_squared();
+        let rho = square * ih2;
+        if !((square - slack) * ih2).simd_lt(reach).any_true() {
+            continue;
+        }
+        weighs(block);
+        let mut w = weight.value(simd, rho * narrow);
         if A::VARIES {
             w *= A::jet(simd, m.dot(outward))[0];
         }
@@ -142,8 +186,16 @@ fn means<S: Simd, W: Weight, A: Facing>(
     (sum(total), centroid.sum(), normal.sum())
 }
 
+/// The blocks of which a sample may weigh about a point at most `slack` away.
+pub(super) fn weighing<W: Weight>(weight: W, near: Near, about: DVec3, slack: f64, active: &mut Vec<u32>) {
+    active.clear();
+    let listed = |block| active.push(near.list[block]);
+    let about = About { point: about, narrow: 1.0, slack, outward: DVec3::ZERO };
+    dispatch!(Level::new(), simd => means::<_, W, AnyWay>(simd, weight, near, about, listed));
+}
+
 /// The direction of least spread of the weighted samples about their centroid, turned against `outward`.
-fn principal(weight: impl Weight, near: &Neighbours, r: DVec3, centroid: DVec3, outward: DVec3) -> DVec3 {
+fn principal(weight: impl Weight, near: Near, r: DVec3, centroid: DVec3, outward: DVec3) -> DVec3 {
     let m = dispatch!(Level::new(), simd => spread(simd, weight, near, r, centroid));
     let (_, vectors) = symmetric3(m);
     let n = vectors.x_axis;
@@ -151,9 +203,9 @@ fn principal(weight: impl Weight, near: &Neighbours, r: DVec3, centroid: DVec3, 
 }
 
 #[inline(always)]
-fn spread<S: Simd>(simd: S, weight: impl Weight, near: &Neighbours, r: DVec3, centroid: DVec3) -> DMat3 {
+fn spread<S: Simd>(simd: S, weight: impl Weight, near: Near, r: DVec3, centroid: DVec3) -> DMat3 {
     let mut columns = [Lanes3::zero(simd); 3];
-    for block in 0..near.blocks() {
+    for block in 0..near.len() {
         let (p, ih2) = near.block(simd, block);
         let d = p.minus(r);
         let w = weight.value(simd, d.length_squared() * ih2);
@@ -167,25 +219,19 @@ fn spread<S: Simd>(simd: S, weight: impl Weight, near: &Neighbours, r: DVec3, ce
 }
 
 /// J and its first two derivatives at a plane.
-pub(super) fn jet<W: Weight, A: Facing>(weight: W, _: A, near: &Neighbours, r: DVec3, plane: &Plane) -> Jet {
+pub(super) fn jet<W: Weight, A: Facing>(weight: W, _: A, near: Near, r: DVec3, plane: &Plane) -> Jet {
     dispatch!(Level::new(), simd => jet_in::<_, W, A>(simd, weight, near, r, plane))
 }
 
 #[inline(always)]
-fn jet_in<S: Simd, W: Weight, A: Facing>(
-    simd: S,
-    weight: W,
-    near: &Neighbours,
-    r: DVec3,
-    plane: &Plane,
-) -> Jet {
+fn jet_in<S: Simd, W: Weight, A: Facing>(simd: S, weight: W, near: Near, r: DVec3, plane: &Plane) -> Jet {
     let Plane { n, t } = *plane;
     let (e1, e2) = n.any_orthonormal_pair();
     let zero = Lanes::splat(simd, 0.0);
     let (mut total, mut energy, mut j_t, mut j_tt) = (zero, zero, zero, zero);
     let (mut g1, mut g2, mut gn) = (zero, zero, zero);
     let (mut h11, mut h12, mut h22, mut h1t, mut h2t) = (zero, zero, zero, zero, zero);
-    for block in 0..near.blocks() {
+    for block in 0..near.len() {
         let (p, ih2) = near.block(simd, block);
         let d = p.minus(r);
         let (a, b, c) = (d.dot(e1), d.dot(e2), d.dot(n));
@@ -257,7 +303,7 @@ fn step(jet: &Jet, k: f64) -> [f64; 3] {
     let hessian = [[a[0], a[1], k * a[2]], [b[0], b[1], k * b[2]], [k * c[0], k * c[1], k * k * c[2]]];
     // A pivot this far below its diagonal has no correct digit left.
     const PIVOT: f64 = 1e-12;
-    let y = match Cholesky::new(&hessian, 3, PIVOT) {
+    let y = match Cholesky::new(&hessian, PIVOT) {
         Some(factor) => factor.solve(&g),
         None => {
             let (values, v) = symmetric3(DMat3::from_cols_array_2d(&hessian));
@@ -289,14 +335,14 @@ fn moved(plane: &Plane, jet: &Jet, y: [f64; 3], by: f64) -> Plane {
 pub(super) fn settle<W: Weight, A: Facing>(
     weight: W,
     facing: A,
-    near: &Neighbours,
+    near: Near,
     r: DVec3,
     k: f64,
     start: Plane,
     straight: &mut Straightness,
 ) -> Result<(Plane, Jet), Stray> {
     let mut plane = start;
-    let mut pass = |plane: &Plane| *straight = straight.min(-plane.n.dot(near.outward));
+    let mut pass = |plane: &Plane| straight.pass(-plane.n);
     pass(&plane);
     let mut here = jet(weight, facing, near, r, &plane);
     for _ in 0..MAX_STEPS {

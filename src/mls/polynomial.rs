@@ -10,8 +10,11 @@
 //! mu zero from 1.5 effective samples a coefficient on, and infinite at 1.2. The terms then vanish like the cube of
 //! what is missing, so F keeps two derivatives, and `tests/surface_field.rs` holds grad F against differences there.
 
+// Loops over indices of fixed length are unrolled, which keeps sums in registers.
+#![allow(clippy::needless_range_loop)]
+
 use super::MAX_DEGREE;
-use super::neighbours::Neighbours;
+use super::blocks::Near;
 use super::plane::Plane;
 use super::{Facing, Stray, Weight};
 use crate::num::cholesky::Cholesky;
@@ -22,6 +25,7 @@ use glam::DVec3;
 /// Coefficients of a polynomial of degree 4.
 pub(super) const MAX_COEFFICIENTS: usize = 15;
 const MAX_MOMENTS: usize = 45;
+const MAX_POWERS: usize = 2 * MAX_DEGREE + 1;
 
 /// How many coefficients a degree has.
 pub(super) const fn coefficients(degree: usize) -> usize {
@@ -33,6 +37,22 @@ pub(super) const fn index(a: usize, b: usize) -> usize {
     let d = a + b;
     d * (d + 1) / 2 + b
 }
+
+/// The exponents of u and v in the order of [`index`].
+const EXPONENTS: [(usize, usize); MAX_MOMENTS] = {
+    let mut all = [(0, 0); MAX_MOMENTS];
+    let mut i = 0;
+    while i < MAX_MOMENTS {
+        let mut d = 0;
+        while coefficients(d) <= i {
+            d += 1;
+        }
+        let b = i - index(d, 0);
+        all[i] = (d - b, b);
+        i += 1;
+    }
+    all
+};
 
 /// A fitted polynomial with what its derivatives need.
 #[derive(Clone, Copy, Debug)]
@@ -90,7 +110,7 @@ fn ridge(per_coefficient: f64) -> [f64; 2] {
 pub(super) fn fit<W: Weight, A: Facing>(
     weight: W,
     _: A,
-    near: &Neighbours,
+    near: Near,
     r: DVec3,
     plane: &Plane,
     basis: [DVec3; 2],
@@ -103,40 +123,59 @@ pub(super) fn fit<W: Weight, A: Facing>(
         3 => sums::<W, A, 3>(weight, near, r, plane, basis),
         _ => sums::<W, A, MAX_DEGREE>(weight, near, r, plane, basis),
     };
+    let effective = sums.moments[0] * sums.moments[0] / sums.squared;
+    let enough = |d: usize| d == 0 || GONE * coefficients(d) as f64 * (1.0 + f64::EPSILON) < effective;
+    let solved = |degree: usize| match degree {
+        0 => solve::<1>(&sums),
+        1 => solve::<3>(&sums),
+        2 => solve::<6>(&sums),
+        3 => solve::<10>(&sums),
+        _ => solve::<MAX_COEFFICIENTS>(&sums),
+    };
+    let fitting = (0..=degree.min(MAX_DEGREE)).rev().filter(|d| enough(*d));
+    let found = fitting.map(|d| Some((d, solved(d)?))).find_map(|found| found);
+    let (degree, [c, a0]) = found.ok_or(Stray::IllConditioned)?;
     let total = sums.moments[0];
+    Ok(Fit {
+        degree,
+        basis,
+        c,
+        a0,
+        drift: sums.drift.map(|d| d / total),
+        vote: sums.vote / total,
+        kept: total / sums.whole,
+        fading: fading(degree, &c, &a0, total, sums.squared),
+    })
+}
+
+/// The `N` coefficients of a degree, and the first column of the inverse of the normal matrix; padded with zeros. `None` where
+/// the samples do not determine them.
+fn solve<const N: usize>(sums: &Sums) -> Option<[[f64; MAX_COEFFICIENTS]; 2]> {
     // Pivots below this share of their diagonal say that the samples do not determine the coefficient.
     const PIVOT: f64 = 1e-10;
+    let total = sums.moments[0];
     let effective = total * total / sums.squared;
-    let enough = |d: usize| d == 0 || GONE * coefficients(d) as f64 * (1.0 + f64::EPSILON) < effective;
-    for degree in (0..=degree.min(MAX_DEGREE)).rev().filter(|d| enough(*d)) {
-        let n = coefficients(degree);
-        let mut a = [[0.0; MAX_COEFFICIENTS]; MAX_COEFFICIENTS];
-        for (i, (ia, ib)) in exponents(degree).enumerate() {
-            for (j, (ja, jb)) in exponents(degree).enumerate().take(i + 1) {
-                a[i][j] = sums.moments[index(ia + ja, ib + jb)];
-            }
-            let k = ia + ib;
-            if 0 < k {
-                a[i][i] += total * ridge(effective / coefficients(k) as f64)[0] * SHARES[i];
-            }
+    let mut a = [[0.0; N]; N];
+    for i in 0..N {
+        let (ia, ib) = EXPONENTS[i];
+        for j in 0..=i {
+            let (ja, jb) = EXPONENTS[j];
+            a[i][j] = sums.moments[index(ia + ja, ib + jb)];
         }
-        if let Some(factor) = Cholesky::new(&a, n, PIVOT) {
-            let mut unit = [0.0; MAX_COEFFICIENTS];
-            unit[0] = 1.0;
-            let (c, a0) = (factor.solve(&sums.heights), factor.solve(&unit));
-            return Ok(Fit {
-                degree,
-                basis,
-                c,
-                a0,
-                drift: sums.drift.map(|d| d / total),
-                vote: sums.vote / total,
-                kept: total / sums.whole,
-                fading: fading(degree, &c, &a0, total, sums.squared),
-            });
+        let k = ia + ib;
+        if 0 < k {
+            a[i][i] += total * ridge(effective / coefficients(k) as f64)[0] * SHARES[i];
         }
     }
-    Err(Stray::IllConditioned)
+    let factor = Cholesky::new(&a, PIVOT)?;
+    let mut unit = [0.0; N];
+    unit[0] = 1.0;
+    let heights = std::array::from_fn(|i| sums.heights[i]);
+    Some([factor.solve(&heights), factor.solve(&unit)].map(|x| {
+        let mut padded = [0.0; MAX_COEFFICIENTS];
+        padded[..N].copy_from_slice(&x);
+        padded
+    }))
 }
 
 /// The change of c_0 by the ridges alone is -sum_k G_k d(rho_k), G_k the sum of a0 c over the terms of degree k.
@@ -163,11 +202,6 @@ fn fading(
     out
 }
 
-/// The exponents of u and v in the order of [`index`].
-fn exponents(degree: usize) -> impl Iterator<Item = (usize, usize)> {
-    (0..=degree).flat_map(|d| (0..=d).map(move |b| (d - b, b)))
-}
-
 struct Sums {
     moments: [f64; MAX_MOMENTS],
     heights: [f64; MAX_COEFFICIENTS],
@@ -179,67 +213,144 @@ struct Sums {
 
 fn sums<W: Weight, A: Facing, const D: usize>(
     weight: W,
-    near: &Neighbours,
+    near: Near,
     r: DVec3,
     plane: &Plane,
     basis: [DVec3; 2],
 ) -> Sums {
-    dispatch!(Level::new(), simd => sums_in::<_, W, A, D>(simd, weight, near, r, plane, basis))
+    let place = Place { near, r, plane: *plane, basis };
+    dispatch!(Level::new(), simd => sums_in::<_, W, A, D>(simd, weight, place))
+}
+
+/// Where the sums are taken.
+#[derive(Clone, Copy)]
+struct Place<'a> {
+    near: Near<'a>,
+    r: DVec3,
+    plane: Plane,
+    basis: [DVec3; 2],
+}
+
+impl Place<'_> {
+    /// Samples of a block in the frame at q, with their weights before and after how they face, and n times their normals.
+    #[inline(always)]
+    fn block<S: Simd, W: Weight, A: Facing>(&self, simd: S, weight: W, block: usize) -> [Lanes<S>; 6] {
+        let Plane { n, t } = self.plane;
+        let (p, ih2) = self.near.block(simd, block);
+        let d = p.minus(self.r);
+        let (u, v, z) = (d.dot(self.basis[0]), d.dot(self.basis[1]), d.dot(n) - t);
+        let whole = weight.value(simd, (u * u + v * v + z * z) * ih2);
+        if !A::VARIES && !A::VOTES {
+            return [u, v, z, whole, whole, whole];
+        }
+        let facing = self.near.normals(simd, block).dot(n);
+        let w = if A::VARIES { whole * A::jet(simd, -facing)[0] } else { whole };
+        [u, v, z, whole, w, facing]
+    }
+
+    /// The moments from the `FIRST`th on, `COUNT` of them.
+    #[inline(always)]
+    fn moments<S: Simd, W: Weight, A: Facing, const FIRST: usize, const COUNT: usize>(
+        &self,
+        simd: S,
+        weight: W,
+        out: &mut [f64; MAX_MOMENTS],
+    ) {
+        let mut moments = [Lanes::splat(simd, 0.0); COUNT];
+        for block in 0..self.near.len() {
+            let [u, v, _, _, w, _] = self.block::<S, W, A>(simd, weight, block);
+            let (row, power) = powers(w, u, v);
+            for i in 0..COUNT {
+                moments[i] += monomial(&row, &power, FIRST + i);
+            }
+        }
+        for i in 0..COUNT {
+            out[FIRST + i] = sum(moments[i]);
+        }
+    }
+}
+
+/// w u^a and v^b.
+#[inline(always)]
+fn powers<S: Simd>(
+    w: Lanes<S>,
+    u: Lanes<S>,
+    v: Lanes<S>,
+) -> ([Lanes<S>; MAX_POWERS], [Lanes<S>; MAX_POWERS]) {
+    let (mut row, mut power) = ([w; MAX_POWERS], [v; MAX_POWERS]);
+    for a in 1..MAX_POWERS {
+        row[a] = row[a - 1] * u;
+    }
+    for b in 2..MAX_POWERS {
+        power[b] = power[b - 1] * v;
+    }
+    (row, power)
 }
 
 #[inline(always)]
-fn sums_in<S: Simd, W: Weight, A: Facing, const D: usize>(
-    simd: S,
-    weight: W,
-    near: &Neighbours,
-    r: DVec3,
-    plane: &Plane,
-    [e1, e2]: [DVec3; 2],
-) -> Sums {
-    let Plane { n, t } = *plane;
+fn monomial<S: Simd>(row: &[Lanes<S>; MAX_POWERS], power: &[Lanes<S>; MAX_POWERS], i: usize) -> Lanes<S> {
+    let (a, b) = EXPONENTS[i];
+    if b == 0 { row[a] } else { row[a] * power[b] }
+}
+
+/// In parts, each with few enough sums to stay in registers, for which weights computed anew are a small price; and each in
+/// loops of fixed length, which are unrolled.
+#[inline(always)]
+fn sums_in<S: Simd, W: Weight, A: Facing, const D: usize>(simd: S, weight: W, place: Place) -> Sums {
     let zero = Lanes::splat(simd, 0.0);
-    let mut moments = [zero; MAX_MOMENTS];
+    let mut moments = [zero; MAX_COEFFICIENTS];
     let mut heights = [zero; MAX_COEFFICIENTS];
     let (mut squared, mut vote, mut whole, mut du, mut dv) = (zero, zero, zero, zero, zero);
-    for block in 0..near.blocks() {
-        let (p, ih2) = near.block(simd, block);
-        let d = p.minus(r);
-        let (u, v, z) = (d.dot(e1), d.dot(e2), d.dot(n) - t);
-        let facing = near.normals(simd, block).dot(n);
-        let mut w = weight.value(simd, (u * u + v * v + z * z) * ih2);
-        whole += w;
-        if A::VARIES {
-            w *= A::jet(simd, -facing)[0];
+    for block in 0..place.near.len() {
+        let [u, v, z, all, w, facing] = place.block::<S, W, A>(simd, weight, block);
+        if A::VARIES || A::VOTES {
+            whole += all;
+            vote += w * facing;
         }
         squared += w * w;
-        vote += w * facing;
-        du += w * u;
-        dv += w * v;
-        // w u^a v^b, row by row: powers of u grow along a, powers of v along b.
-        let mut row = w;
-        let mut row_z = w * z;
-        for b in 0..=2 * D {
-            let (mut m, mut mz) = (row, row_z);
-            for a in 0..=2 * D - b {
-                moments[index(a, b)] += m;
-                m *= u;
-                if a + b <= D {
-                    heights[index(a, b)] += mz;
-                    mz *= u;
-                }
+        if D == 0 {
+            du += w * u;
+            dv += w * v;
+        }
+        let (row, power) = powers(w, u, v);
+        for i in 0..const { coefficients(if D == 2 { 4 } else { D }) } {
+            let m = monomial(&row, &power, i);
+            moments[i] += m;
+            if i < coefficients(D) {
+                heights[i] += m * z;
             }
-            row *= v;
-            row_z *= v;
         }
     }
-    Sums {
-        moments: moments.map(sum),
-        heights: heights.map(sum),
-        drift: [sum(du), sum(dv)],
-        squared: sum(squared),
-        vote: sum(vote),
-        whole: sum(whole),
+    let mut out = [0.0; MAX_MOMENTS];
+    out[..MAX_COEFFICIENTS].copy_from_slice(&each(&moments));
+    match D {
+        1 => place.moments::<S, W, A, 3, 3>(simd, weight, &mut out),
+        3 => place.moments::<S, W, A, 10, 18>(simd, weight, &mut out),
+        4 => {
+            place.moments::<S, W, A, 15, 13>(simd, weight, &mut out);
+            place.moments::<S, W, A, 28, 17>(simd, weight, &mut out);
+        }
+        _ => {}
     }
+    let total = out[0];
+    Sums {
+        heights: each(&heights),
+        drift: if D == 0 { [sum(du), sum(dv)] } else { [out[1], out[2]] },
+        squared: sum(squared),
+        vote: if A::VARIES || A::VOTES { sum(vote) } else { -total },
+        whole: if A::VARIES { sum(whole) } else { total },
+        moments: out,
+    }
+}
+
+/// The sum of the lanes of each. (A loop: `array::map` is not inlined where the instructions are those of the level.)
+#[inline(always)]
+fn each<S: Simd, const N: usize>(lanes: &[Lanes<S>; N]) -> [f64; N] {
+    let mut out = [0.0; N];
+    for i in 0..N {
+        out[i] = sum(lanes[i]);
+    }
+    out
 }
 
 /// Values and derivatives along u and v of two polynomials of one degree at eight places.

@@ -89,6 +89,8 @@ impl Weight for Gaussian {
 pub trait Facing: Copy + Send + Sync + std::fmt::Debug + 'static {
     /// Whether the factor can differ from one.
     const VARIES: bool;
+    /// Whether it has to be asked which side of the plane the samples call out; else they all face against its normal.
+    const VOTES: bool = true;
 
     /// The factor and its first two derivatives with respect to c.
     fn jet<S: Simd>(simd: S, c: Lanes<S>) -> [Lanes<S>; 3];
@@ -110,6 +112,20 @@ impl Facing for AnyWay {
     fn jet<S: Simd>(simd: S, _: Lanes<S>) -> [Lanes<S>; 3] {
         let zero = Lanes::splat(simd, 0.0);
         [Lanes::splat(simd, 1.0), zero, zero]
+    }
+}
+
+/// All samples weigh, and all are known to face within 84 degrees of one direction, against the plane's normal.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OneWay;
+
+impl Facing for OneWay {
+    const VARIES: bool = false;
+    const VOTES: bool = false;
+
+    #[inline(always)]
+    fn jet<S: Simd>(simd: S, c: Lanes<S>) -> [Lanes<S>; 3] {
+        AnyWay::jet(simd, c)
     }
 }
 

@@ -13,7 +13,11 @@ pub type Lanes<S> = f64x8<S>;
 /// The sum of the lanes, in a fixed order.
 #[inline(always)]
 pub fn sum<S: Simd>(a: Lanes<S>) -> f64 {
-    ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7]))
+    // ((a0 + a4) + (a2 + a6)) + ((a1 + a5) + (a3 + a7)).
+    let (low, high) = a.split();
+    let (low, high) = (low + high).split();
+    let two = low + high;
+    two[0] + two[1]
 }
 
 /// Three coordinates of eight points or vectors.

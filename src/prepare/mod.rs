@@ -84,6 +84,8 @@ pub struct ScanReport {
     pub name: String,
     /// Samples kept.
     pub samples: usize,
+    /// Samples whose normals were estimated.
+    pub estimated: usize,
     /// What was dropped or mended, one sentence each.
     pub notes: Vec<String>,
     /// Whether it bounds a solid, if the scene had to know.
@@ -108,7 +110,8 @@ pub fn prepare(scene: &Scene, options: &Options) -> Result<Prepared, Vec<Diagnos
     let lights = keep(&mut errors, lights_of(scene));
     let chosen = keep(&mut errors, camera_of(scene, options.camera.as_deref()));
     let known = materials.as_deref().unwrap_or_default();
-    let mut builder = Builder::new(options, known);
+    let lines = settings.as_ref().map_or(0, Settings::lines);
+    let mut builder = Builder::new(options, known, lines);
     let world = world(scene, &mut builder, options.measure_all, known.len());
     let world = world.map_err(|more| errors.extend(more)).ok();
     let (Some(settings), Some(materials), Some(lights), Some(chosen), Some((world, outline))) =

@@ -148,6 +148,11 @@ pub fn build(call: &Call) -> Result<Settings, BuildError> {
 }
 
 impl Settings {
+    /// How many rays the whole picture sends from the eye, whatever part of it is made.
+    pub fn lines(&self) -> u64 {
+        u64::from(self.size[0]) * u64::from(self.size[1]) * u64::from(self.samples)
+    }
+
     /// Replaces what the command line gives.
     pub fn apply(&mut self, overrides: &Overrides) -> Result<(), BuildError> {
         if let Some(size) = overrides.size {

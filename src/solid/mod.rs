@@ -167,6 +167,10 @@ pub struct Counts {
     pub caps: u64,
     /// Crossings answered by a patch alone.
     pub patch_hits: u64,
+    /// Polynomials fitted to samples, which say where to ask F.
+    pub guides: u64,
+    /// Polynomials fitted to F = 0.
+    pub patches: u64,
     /// Questions to leaves.
     pub leaf_queries: u64,
     /// Leaves whose box a ray met and that were never asked.
@@ -192,6 +196,8 @@ impl Counts {
         self.odd_chords += o.odd_chords;
         self.caps += o.caps;
         self.patch_hits += o.patch_hits;
+        self.guides += o.guides;
+        self.patches += o.patches;
         self.leaf_queries += o.leaf_queries;
         self.leaves_skipped += o.leaves_skipped;
         self.ties += o.ties;

@@ -1,6 +1,6 @@
 //! The declaration of `points`; the surface itself is [`super::point_set`].
 
-use super::point_set::Options;
+use super::point_set::{Lead, Options};
 use super::table::{Build, Primitive};
 use crate::geom::tolerance;
 use crate::mls::Form;
@@ -39,7 +39,7 @@ pub const PRIMITIVE: Primitive = Primitive {
     build: Build::Points,
 };
 
-/// The options of the surface that a call asks for.
+/// The options of the surface that a call asks for; whether patches pay is for the picture to say.
 pub fn options(call: &Call) -> Options {
     Options {
         gaussian: call.text("kernel") == Some("gaussian"),
@@ -47,5 +47,6 @@ pub fn options(call: &Call) -> Options {
         form: if call.text("plane") == Some("levin") { Form::Levin } else { Form::Free },
         degree: call.number("degree").map_or(2, |d| d as usize),
         tolerance: call.number("tolerance").unwrap_or(tolerance::POINTS),
+        lead: Lead::Guides,
     }
 }

@@ -36,6 +36,8 @@ pub struct Stats {
     rays: RayCounts,
     pss: PssCounts,
     csg: CsgCounts,
+    /// Files opened beside the scene.
+    files: usize,
     scans: Vec<ScanNotes>,
 }
 
@@ -43,6 +45,8 @@ pub struct Stats {
 struct ScanNotes {
     name: String,
     samples: usize,
+    /// Normals estimated: none where the file has them.
+    normals_estimated: usize,
     /// What was dropped or mended, one sentence each.
     notes: Vec<String>,
     /// `None` where nothing depends on it: of a scan drawn by itself, or closed.
@@ -82,6 +86,9 @@ struct PssCounts {
     projections: u64,
     degree_falls: u64,
     patch_hits: u64,
+    /// Made, where rays came.
+    guides: u64,
+    patches: u64,
     crossings: u64,
     certificate_failures: u64,
     parity_repairs: u64,
@@ -105,13 +112,24 @@ impl ScanNotes {
             open_holes: s.open_holes,
             missing: s.missing,
         });
-        ScanNotes { name: scan.name.clone(), samples: scan.samples, notes: scan.notes.clone(), solidity }
+        ScanNotes {
+            name: scan.name.clone(),
+            samples: scan.samples,
+            normals_estimated: scan.estimated,
+            notes: scan.notes.clone(),
+            solidity,
+        }
     }
 }
 
 impl Stats {
-    /// Gathers what is known; `wall` is the time since the start.
-    pub fn new(wall: Duration, stages: &Stages, rendered: &Rendered, scans: &[ScanReport]) -> Stats {
+    /// Gathers what is known; `wall` is the time since the start, `files` how many were opened beside the scene.
+    pub fn new(
+        wall: Duration,
+        stages: &Stages,
+        rendered: &Rendered,
+        (files, scans): (usize, &[ScanReport]),
+    ) -> Stats {
         let (rays, counts) = (rendered.rays, rendered.counts);
         Stats {
             wall_s: wall.as_secs_f64(),
@@ -130,6 +148,8 @@ impl Stats {
                 projections: counts.projections,
                 degree_falls: counts.degree_falls,
                 patch_hits: counts.patch_hits,
+                guides: counts.guides,
+                patches: counts.patches,
                 crossings: counts.crossings,
                 certificate_failures: counts.certificate_failures,
                 parity_repairs: counts.parity_repairs,
@@ -141,6 +161,7 @@ impl Stats {
                 ties: counts.ties,
                 bad_leaves: counts.bad_leaves,
             },
+            files,
             scans: scans.iter().map(ScanNotes::new).collect(),
         }
     }

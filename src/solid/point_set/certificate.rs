@@ -84,7 +84,7 @@ impl Cell {
         if monotone {
             return Verdict::Empty;
         }
-        let (lowest, share) = self.lower_bound(m);
+        let (lowest, share) = lower_bound(self.length, self.a, self.b, m);
         if 0.0 < lowest {
             return Verdict::Empty;
         }
@@ -206,22 +206,22 @@ impl Cell {
         const SHARE: f64 = 0.008_018_753_738_744_805;
         self.fourth.is_finite() && SHARE * self.fourth * self.length.powi(3) < flattest
     }
+}
 
-    /// The least that |F| can be by the curvature in a cell whose ends have one sign, and where, as a share of the cell.
-    fn lower_bound(&self, m: f64) -> (f64, f64) {
-        let length = self.length;
-        let sign = if self.a[0] < 0.0 { -1.0 } else { 1.0 };
-        let (va, sa) = (sign * self.a[0], sign * self.a[1]);
-        let (vb, sb) = (sign * self.b[0], -sign * self.b[1]);
-        // From a: va + sa x - m x^2/2; from b: vb + sb (L-x) - m (L-x)^2/2. They meet where they are equal.
-        let from_a = |x: f64| va + sa * x - 0.5 * m * x * x;
-        let from_b = |x: f64| vb + sb * (length - x) - 0.5 * m * (length - x) * (length - x);
-        let denominator = sa + sb - m * length;
-        let meet = (vb - va + sb * length - 0.5 * m * length * length) / denominator;
-        // M covers the remainders of both ends, so they meet inside, up to rounding.
-        let meet = meet.clamp(0.0, length);
-        (from_a(meet).min(from_b(meet)).min(va).min(vb), meet / length)
-    }
+/// The least that |F| can be by a curvature `m` in a cell whose ends have one sign, and where, as a share of the cell; of
+/// F and F' at both ends.
+pub(super) fn lower_bound(length: f64, a: [f64; 2], b: [f64; 2], m: f64) -> (f64, f64) {
+    let sign = if a[0] < 0.0 { -1.0 } else { 1.0 };
+    let (va, sa) = (sign * a[0], sign * a[1]);
+    let (vb, sb) = (sign * b[0], -sign * b[1]);
+    // From a: va + sa x - m x^2/2; from b: vb + sb (L-x) - m (L-x)^2/2. They meet where they are equal.
+    let from_a = |x: f64| va + sa * x - 0.5 * m * x * x;
+    let from_b = |x: f64| vb + sb * (length - x) - 0.5 * m * (length - x) * (length - x);
+    let denominator = sa + sb - m * length;
+    let meet = (vb - va + sb * length - 0.5 * m * length * length) / denominator;
+    // M covers the remainders of both ends, so they meet inside, up to rounding.
+    let meet = meet.clamp(0.0, length);
+    (from_a(meet).min(from_b(meet)).min(va).min(vb), meet / length)
 }
 
 #[cfg(test)]
@@ -238,7 +238,7 @@ mod tests {
         for (c, k, x0) in [(0.2, 0.9, 0.3), (0.05, 1.0, 0.7), (0.5, -0.8, 0.4), (0.001, 0.5, 0.5)] {
             let f = |x: f64| [c + 0.5 * k * (x - x0) * (x - x0), k * (x - x0)];
             let cell = cell(1.0, f(0.0), f(1.0));
-            let (low, _) = cell.lower_bound(cell.curvature());
+            let (low, _) = lower_bound(cell.length, cell.a, cell.b, cell.curvature());
             let least = (0..=1000).map(|i| f(i as f64 / 1000.0)[0]).fold(f64::INFINITY, f64::min);
             assert!(low <= least + 1e-12, "{low} {least}");
         }

@@ -13,7 +13,7 @@ pub struct FieldScratch(Room);
 impl FieldScratch {
     /// Solves of plane and polynomial so far.
     pub fn projections(&self) -> u64 {
-        self.0.projections
+        self.0.work.projections
     }
 
     pub(super) fn room(&mut self) -> &mut Room {
@@ -28,7 +28,6 @@ impl PointSet {
     /// with the other reasons where the projection does.
     pub fn field(&self, at: DVec3, scratch: &mut FieldScratch) -> Result<Sample, Stray> {
         let sample = self.samples.nearest(at).ok_or(Stray::Sparse)?;
-        scratch.0.forget();
         let field = self.field_near(at, sample, &mut scratch.0)?;
         if self.has_ended(sample, &field, &scratch.0) { Err(Stray::Ended) } else { Ok(field) }
     }

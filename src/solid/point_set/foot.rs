@@ -47,7 +47,6 @@ impl PointSet {
     }
 
     pub(super) fn foot_from(&self, of: DVec3, sample: usize, room: &mut Room) -> Result<Foot, Stray> {
-        room.forget();
         let mut x = self.samples.points[sample];
         let mut before: Option<(DVec3, DVec3)> = None;
         let mut bend = 0.0;

@@ -3,12 +3,14 @@
 
 use std::cell::Cell;
 use std::cmp::Ordering;
+use std::ops::Range;
 
 use glam::DVec3;
 
 use crate::geom::halves::{Halves, Halving};
 use crate::geom::{Aabb, Interval, Ray};
-use crate::mls::{Guess, Neighbours};
+use crate::mls::{Blocks, Neighbours};
+use crate::num::lanes::LANES;
 
 /// Samples in the order of the hierarchy.
 #[derive(Clone, Debug)]
@@ -19,7 +21,7 @@ pub struct Hierarchy {
     pub normals: Vec<DVec3>,
     /// Widths h_i, which are also the radii of the trust spheres.
     pub widths: Vec<f64>,
-    inverse_widths: Vec<f64>,
+    blocks: Blocks,
     /// For each sample here, its index in the lists that [`Hierarchy::new`] was given.
     pub original: Vec<u32>,
     nodes: Halves<Cluster>,
@@ -63,6 +65,40 @@ impl Halving<u32> for Samples<'_> {
     }
 }
 
+/// A leaf is a cell, one block of lanes; two, four, ... up to 2^(this less one) cells side by side are nodes too.
+pub(super) const LEVELS: usize = 3;
+
+/// A line as boxes ask it.
+struct Slabs {
+    origin: DVec3,
+    inverse: DVec3,
+}
+
+impl Slabs {
+    fn new(line: &Ray) -> Slabs {
+        // A line along a slab lies in it or passes it by a finite time that is later than any.
+        let inverse = |x: f64| if x == 0.0 { f64::MAX.sqrt() } else { 1.0 / x };
+        Slabs { origin: line.origin, inverse: DVec3::from_array(line.dir.to_array().map(inverse)) }
+    }
+
+    /// The part in a box grown by some length: everything in it, perhaps a rounding more or less.
+    #[inline(always)]
+    fn clip(&self, bounds: &Aabb, grown: f64) -> Interval {
+        let a = (bounds.min - grown - self.origin) * self.inverse;
+        let b = (bounds.max + grown - self.origin) * self.inverse;
+        Interval::new(a.min(b).max_element(), a.max(b).min_element())
+    }
+}
+
+/// The part of a line near a cell: within the largest width of the box of its samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellOn {
+    /// Arc length range.
+    pub range: Interval,
+    /// Which leaf.
+    pub cell: u32,
+}
+
 /// The part of a line inside one trust sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
@@ -72,23 +108,17 @@ pub struct Reach {
     pub sample: u32,
 }
 
-/// Samples a leaf: small enough that a ball wastes little, large enough that the nodes stay few.
-const LEAF: usize = 8;
-
 impl Hierarchy {
     /// Builds it; `O(n log n)`, the same for any number of threads.
     pub fn new(points: &[DVec3], normals: &[DVec3], widths: &[f64]) -> Hierarchy {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
-        let nodes = Halves::new(&mut order, LEAF, &Samples { points, widths });
+        let nodes = Halves::full(&mut order, LANES, LANES << (LEVELS - 1), &Samples { points, widths });
         let pick = |i: &u32| *i as usize;
-        Hierarchy {
-            points: order.iter().map(|i| points[pick(i)]).collect(),
-            normals: order.iter().map(|i| normals[pick(i)]).collect(),
-            widths: order.iter().map(|i| widths[pick(i)]).collect(),
-            inverse_widths: order.iter().map(|i| 1.0 / widths[pick(i)]).collect(),
-            original: order,
-            nodes,
-        }
+        let points: Vec<DVec3> = order.iter().map(|i| points[pick(i)]).collect();
+        let normals: Vec<DVec3> = order.iter().map(|i| normals[pick(i)]).collect();
+        let widths: Vec<f64> = order.iter().map(|i| widths[pick(i)]).collect();
+        let blocks = Blocks::new(&points, &normals, &widths);
+        Hierarchy { points, normals, widths, blocks, original: order, nodes }
     }
 
     /// A box around all trust spheres.
@@ -96,21 +126,48 @@ impl Hierarchy {
         self.nodes.root().map_or(Aabb::EMPTY, |root| root.bounds.inflated(root.widest))
     }
 
-    /// All trust spheres that a line of unit direction meets, with the part inside, in the order of storage.
-    pub fn spheres_on(&self, line: &Ray, out: &mut Vec<Reach>) {
+    /// The cells, one a leaf, that a line of unit direction comes near, in the order of storage. What is in a trust sphere of
+    /// one of its samples is near a cell.
+    pub fn cells_on(&self, line: &Ray, out: &mut Vec<CellOn>) {
         out.clear();
-        self.nodes.visit(
-            |node| !node.bounds.inflated(node.widest).clip(line).is_empty(),
-            |i| {
-                let (p, h) = (self.points[i as usize], self.widths[i as usize]);
-                let middle = (p - line.origin).dot(line.dir);
-                let off = (p - line.at(middle)).length_squared();
-                if off < h * h {
-                    let half = (h * h - off).sqrt();
-                    out.push(Reach { range: Interval::new(middle - half, middle + half), sample: i });
-                }
+        let (met, slabs) = (Cell::new(Interval::EMPTY), Slabs::new(line));
+        self.nodes.visit_leaves(
+            |node| {
+                let range = slabs.clip(&node.bounds, node.widest);
+                met.set(range);
+                range.lo <= range.hi
             },
+            |leaf| out.push(CellOn { range: met.get(), cell: leaf.start / LANES as u32 }),
         );
+    }
+
+    /// Appends the trust spheres of a cell that a line of unit direction meets, with the part inside.
+    pub fn spheres_of(&self, cell: usize, line: &Ray, out: &mut Vec<Reach>) {
+        for i in self.of_cell(cell) {
+            let (p, h) = (self.points[i], self.widths[i]);
+            let middle = (p - line.origin).dot(line.dir);
+            let off = (p - line.at(middle)).length_squared();
+            if off < h * h {
+                let half = (h * h - off).sqrt();
+                out.push(Reach { range: Interval::new(middle - half, middle + half), sample: i as u32 });
+            }
+        }
+    }
+
+    /// The samples of a cell.
+    pub fn of_cell(&self, cell: usize) -> Range<usize> {
+        self.of_cells(0, cell)
+    }
+
+    /// The samples of `2^level` cells that are a node of the hierarchy; `cells` counts such.
+    pub fn of_cells(&self, level: usize, cells: usize) -> Range<usize> {
+        let each = LANES << level;
+        each * cells..(each * (cells + 1)).min(self.points.len())
+    }
+
+    /// How many cells there are.
+    pub fn cells(&self) -> usize {
+        self.points.len().div_ceil(LANES)
     }
 
     /// The sample whose trust sphere holds a point and to which the point is nearest in that sample's own widths
@@ -141,14 +198,24 @@ impl Hierarchy {
         (nearest != usize::MAX).then_some(nearest)
     }
 
-    /// Gathers every sample whose support (`support` is that of the weight, in squared widths) reaches the ball of
-    /// `reach` widths about the foot of a guess, in the order of storage.
-    pub fn gather(&self, guess: &Guess, reach: f64, support: f64, out: &mut Neighbours) {
-        let Guess { foot: center, outward, width: unit } = *guess;
-        out.reset(center, unit, reach, outward);
-        self.visit(center, reach * unit, support.sqrt(), |i| {
-            out.push(self.points[i], self.normals[i], self.inverse_widths[i]);
-        });
+    /// The samples in the blocks that evaluations go over: one a leaf.
+    pub fn blocks(&self) -> &Blocks {
+        &self.blocks
+    }
+
+    /// Gathers every block with a sample whose support (`support` is that of the weight, in squared widths) reaches the ball
+    /// of this radius (world length) about a point.
+    pub fn gather(&self, center: DVec3, reach: f64, support: f64, outward: DVec3, out: &mut Neighbours) {
+        out.reset(center, reach, outward);
+        let k = support.sqrt();
+        self.nodes.visit_leaves(
+            |node| {
+                let far = reach + k * node.widest;
+                node.bounds.distance_squared(center) < far * far
+            },
+            |leaf| out.push(leaf.start / LANES as u32),
+        );
+        out.settle(&self.blocks);
     }
 
     /// Shows every sample whose ball of `k` widths meets the ball of radius `r` (world length) about a point, in the

@@ -8,8 +8,9 @@ use glam::DVec3;
 
 use super::PointSet;
 use super::caps::Cap;
-use super::hierarchy::Reach;
+use super::hierarchy::{CellOn, Reach};
 use super::probe::Room;
+use super::quick::{QuickRoom, Said};
 use super::roots::{Findings, Piece, Search, Stretch, WALL};
 use crate::geom::{Interval, Ray};
 use crate::solid::{Answer, Body, Counts, Crossing, Scratch};
@@ -24,12 +25,12 @@ pub(super) mod part {
     pub const WALL: u32 = 2;
 }
 
-/// A band: a stretch of the line inside overlapping trust spheres.
+/// A band: a stretch of the line near cells that overlap.
 #[derive(Clone, Copy, Debug)]
 struct Band {
     range: Interval,
-    /// Its spheres are this range of the sorted list.
-    spheres: [usize; 2],
+    /// Its cells are this range of the sorted list.
+    cells: [usize; 2],
     searched: bool,
 }
 
@@ -43,10 +44,16 @@ pub struct LineScratch {
     /// t = t0 + s * per_s for arc length s.
     t0: f64,
     per_s: f64,
-    reaches: Vec<Reach>,
+    cells: Vec<CellOn>,
     bands: Vec<Band>,
+    /// Trust spheres of the band searched last, sorted.
+    reaches: Vec<Reach>,
+    /// Stretches inside overlapping trust spheres, of the bands that were searched for roots of F.
+    spheres: Vec<Interval>,
     found: Vec<Findings>,
     room: Room,
+    quick: QuickRoom,
+    searched: Findings,
     stack: Vec<Stretch>,
     caps: Vec<Cap>,
 }
@@ -57,10 +64,10 @@ impl LineScratch {
     }
 }
 
-/// The trust spheres of the band at or after arc length `s`.
-fn spheres_at<'a>(bands: &[Band], reaches: &'a [Reach], s: f64) -> &'a [Reach] {
+/// The cells of the band at or after arc length `s`.
+fn cells_at<'a>(bands: &[Band], cells: &'a [CellOn], s: f64) -> &'a [CellOn] {
     let band = bands.partition_point(|b| b.range.hi < s).min(bands.len().max(1) - 1);
-    bands.get(band).map_or(&[][..], |b| &reaches[b.spheres[0]..b.spheres[1]])
+    bands.get(band).map_or(&[][..], |b| &cells[b.cells[0]..b.cells[1]])
 }
 
 /// Where a walk along the line stands.
@@ -134,23 +141,25 @@ impl PointSet {
             let (_, gradient) = self.winding().value_and_gradient(at);
             return (-gradient).try_normalize().unwrap_or(facing);
         }
+        let cells = cells_at(&line.bands, &line.cells, s);
         if crossing.part == part::WALL {
             // A wall stands where definitions disagree: the nearest sample tells best how the surface lies.
-            let nearest = self.nearest_sample(&unit, s, spheres_at(&line.bands, &line.reaches, s));
-            let normal = self.samples.normals[nearest];
+            let normal = self.nearest_of(at, cells).map_or(facing, |nearest| self.samples.normals[nearest]);
             return if 0.0 < normal.dot(facing) { normal } else { facing };
         }
-        let before = (line.room.projections, line.room.falls);
-        let spheres = spheres_at(&line.bands, &line.reaches, s);
-        let gradient = self.gradient_at(&unit, s, spheres, &mut line.room);
-        counts.projections += line.room.projections - before.0;
-        counts.degree_falls += line.room.falls - before.1;
-        gradient.and_then(DVec3::try_normalize).unwrap_or(facing)
+        let before = line.room.work;
+        let normal = self.patch_normal(&unit, s, cells, &mut line.room).or_else(|| {
+            let sample = self.nearest_of(at, cells)?;
+            self.field_near(at, sample, &mut line.room).ok()?.gradient.try_normalize()
+        });
+        line.room.charge(before, counts);
+        normal.unwrap_or(facing)
     }
 
     /// The width of the sample nearest to arc length `s`.
     fn width_near(&self, unit: &Ray, s: f64, line: &LineScratch) -> f64 {
-        self.samples.widths[self.nearest_sample(unit, s, spheres_at(&line.bands, &line.reaches, s))]
+        let nearest = self.nearest_of(unit.at(s), cells_at(&line.bands, &line.cells, s));
+        nearest.map_or(0.0, |i| self.samples.widths[i])
     }
 
     /// This thread's knowledge of the line, begun afresh where the line is another.
@@ -175,17 +184,17 @@ impl PointSet {
         line.line = Some(unit);
         line.t0 = t0;
         line.per_s = 1.0 / length;
-        line.room.forget();
         line.bands.clear();
-        self.samples.spheres_on(&unit, &mut line.reaches);
-        line.reaches.sort_unstable_by(|a, b| a.range.lo.total_cmp(&b.range.lo).then(a.sample.cmp(&b.sample)));
-        for (i, reach) in line.reaches.iter().enumerate() {
+        line.spheres.clear();
+        self.samples.cells_on(&unit, &mut line.cells);
+        line.cells.sort_unstable_by(|a, b| a.range.lo.total_cmp(&b.range.lo).then(a.cell.cmp(&b.cell)));
+        for (i, cell) in line.cells.iter().enumerate() {
             match line.bands.last_mut() {
-                Some(band) if reach.range.lo <= band.range.hi => {
-                    band.range.hi = band.range.hi.max(reach.range.hi);
-                    band.spheres[1] = i + 1;
+                Some(band) if cell.range.lo <= band.range.hi => {
+                    band.range.hi = band.range.hi.max(cell.range.hi);
+                    band.cells[1] = i + 1;
                 }
-                _ => line.bands.push(Band { range: reach.range, spheres: [i, i + 1], searched: false }),
+                _ => line.bands.push(Band { range: cell.range, cells: [i, i + 1], searched: false }),
             }
         }
         if line.found.len() < line.bands.len() {
@@ -193,33 +202,122 @@ impl PointSet {
         }
     }
 
-    /// Isolates the roots of a band, once a line.
+    /// Finds the roots of a band, once a line: those of its patches where they decide it, else those of F.
     fn search(&self, line: &mut LineScratch, index: usize, counts: &mut Counts) {
-        let band = line.bands[index];
-        if band.searched {
+        if line.bands[index].searched {
             return;
         }
         line.bands[index].searched = true;
-        let found = &mut line.found[index];
-        found.clear();
-        // Bands may be searched in any order and must not feel each other's gathering.
-        line.room.forget();
-        let before = (line.room.projections, line.room.falls);
-        let unit = line.line.unwrap_or(Ray::new(DVec3::ZERO, DVec3::Z));
-        Search {
-            set: self,
-            line: &unit,
-            spheres: &line.reaches[band.spheres[0]..band.spheres[1]],
-            room: &mut line.room,
-            out: found,
-            stack: &mut line.stack,
+        let band = line.bands[index];
+        let before = line.room.work;
+        line.found[index].clear();
+        if !self.by_patches(line, index, counts) {
+            line.found[index].clear();
+            self.by_search(line, band, index);
         }
-        .run(band.range);
-        counts.projections += line.room.projections - before.0;
-        counts.degree_falls += line.room.falls - before.1;
+        line.room.charge(before, counts);
+        let found = &line.found[index];
         counts.crossings += found.roots.len() as u64;
         counts.certificate_failures += found.failures;
         counts.parity_repairs += found.roots.iter().filter(|r| r.jump).count() as u64;
+    }
+
+    /// Finds the roots of a band by its patches and guides, and those of F only where nothing follows the surface; `false` where
+    /// what comes out does not fit together, and nothing is filled in then.
+    fn by_patches(&self, line: &mut LineScratch, index: usize, counts: &mut Counts) -> bool {
+        let Some(unit) = line.line.filter(|_| !self.patches.are_none()) else { return false };
+        let Band { range, cells, .. } = line.bands[index];
+        let near = &line.cells[cells[0]..cells[1]];
+        let said =
+            self.quick(&unit, (range, near), &mut line.room, &mut line.quick, &mut line.found[index], counts);
+        match said {
+            Said::Nothing => false,
+            Said::All => {
+                let found = &mut line.found[index];
+                let piece = self.whole_piece(&unit, (range, near), &mut line.quick, &found.roots);
+                piece.is_ok_and(|piece| {
+                    found.pieces.extend(piece);
+                    true
+                })
+            }
+            Said::Some => self.around_rough(line, index, &unit),
+        }
+    }
+
+    /// Searches the rough stretches of a band for roots of F, and puts them between those of patches; `false` where these do
+    /// not fit together, or not to what the samples at the ends of the band say.
+    fn around_rough(&self, line: &mut LineScratch, index: usize, unit: &Ray) -> bool {
+        let Band { cells, .. } = line.bands[index];
+        self.spheres_in(line, cells, unit);
+        let LineScratch { reaches, found, room, quick, stack, searched, .. } = line;
+        let found = &mut found[index];
+        searched.clear();
+        for rough in &quick.rough {
+            // Spheres of all samples near, as F is that of the nearest one.
+            let from = reaches.partition_point(|r| r.range.lo <= rough.hi);
+            Search { set: self, line: unit, spheres: &reaches[..from], room, out: searched, stack }
+                .run(*rough);
+        }
+        let whole = searched.pieces.len() == quick.rough.len()
+            && searched.pieces.iter().zip(&quick.rough).all(|(piece, rough)| piece.range == *rough);
+        let pieces = searched.pieces.iter();
+        // Where each begins, and the states before and after it.
+        let mut states: Vec<(f64, bool, bool)> =
+            pieces.map(|p| (p.range.lo, p.inside[0], p.inside[1])).collect();
+        states.extend(found.roots.iter().map(|r| (r.s, !r.entering, r.entering)));
+        states.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let (Some(first), Some(last)) = (states.first(), states.last()) else { return false };
+        let inside = [first.1, last.2];
+        let hi = reaches.iter().map(|r| r.range.hi).fold(f64::NEG_INFINITY, f64::max);
+        let range = Interval::new(reaches[0].range.lo.min(first.0), hi.max(last.0));
+        let near = &line.cells[cells[0]..cells[1]];
+        let side = |s: f64| self.side(unit.at(s), near);
+        let fits = whole
+            && states.windows(2).all(|w| w[0].2 == w[1].1)
+            && [side(range.lo), side(range.hi)] == inside.map(Some);
+        if fits {
+            found.roots.extend(searched.roots.iter().copied());
+            found.roots.sort_unstable_by(|a, b| a.s.total_cmp(&b.s));
+            found.failures += searched.failures;
+            found.pieces.push(Piece { range, inside, roots: [0, found.roots.len()] });
+        }
+        fits
+    }
+
+    /// Collects the trust spheres of some cells that a line meets, sorted.
+    fn spheres_in(&self, line: &mut LineScratch, cells: [usize; 2], unit: &Ray) {
+        line.reaches.clear();
+        for cell in &line.cells[cells[0]..cells[1]] {
+            self.samples.spheres_of(cell.cell as usize, unit, &mut line.reaches);
+        }
+        line.reaches.sort_unstable_by(|a, b| a.range.lo.total_cmp(&b.range.lo).then(a.sample.cmp(&b.sample)));
+    }
+
+    /// Isolates the roots of F in a band, in each stretch of overlapping trust spheres.
+    fn by_search(&self, line: &mut LineScratch, band: Band, index: usize) {
+        let unit = line.line.unwrap_or(Ray::new(DVec3::ZERO, DVec3::Z));
+        self.spheres_in(line, band.cells, &unit);
+        let mut from = 0;
+        while from < line.reaches.len() {
+            let mut range = line.reaches[from].range;
+            let more = line.reaches[from..].iter().take_while(|r| {
+                let overlaps = r.range.lo <= range.hi;
+                range.hi = if overlaps { range.hi.max(r.range.hi) } else { range.hi };
+                overlaps
+            });
+            let until = from + more.count();
+            line.spheres.push(range);
+            Search {
+                set: self,
+                line: &unit,
+                spheres: &line.reaches[from..until],
+                room: &mut line.room,
+                out: &mut line.found[index],
+                stack: &mut line.stack,
+            }
+            .run(range);
+            from = until;
+        }
     }
 
     /// A place before `lo` from which to walk, and the state there.
@@ -304,7 +402,7 @@ impl PointSet {
     ) {
         let Some(unit) = line.line else { return };
         line.caps.clear();
-        let blind = line.bands.iter().map(|b| b.range);
+        let blind = line.spheres.iter().copied();
         self.caps(&unit, gap, ends, blind, &mut line.caps);
         for cap in &line.caps {
             counts.caps += 1;

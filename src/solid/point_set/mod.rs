@@ -10,7 +10,9 @@ mod field;
 mod foot;
 mod hierarchy;
 mod line;
+mod patch;
 mod probe;
+mod quick;
 mod roots;
 mod solidity;
 mod thick;
@@ -23,8 +25,9 @@ use glam::{DAffine3, DVec3};
 pub use caps::Closure;
 pub use field::FieldScratch;
 pub use foot::Foot;
-pub use hierarchy::{Hierarchy, Reach};
+pub use hierarchy::{CellOn, Hierarchy, Reach};
 pub use line::LineScratch;
+use patch::Patches;
 pub use solidity::Solidity;
 pub use thick::{Thick, ThickLine};
 
@@ -69,11 +72,33 @@ pub struct Options {
     pub form: Form,
     /// Relative to the diagonal of the samples.
     pub tolerance: f64,
+    /// What the search for roots goes by.
+    pub lead: Lead,
+}
+
+/// What the search for the roots of F goes by, where the samples allow it. The roots are the same, within the tolerance.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Lead {
+    /// F alone: the certificate of its curvature everywhere.
+    Search,
+    /// Guides: polynomials through the samples say where to ask F.
+    #[default]
+    Guides,
+    /// Patches too: polynomials fitted to F = 0 answer where their error is within the tolerance. It pays where many rays
+    /// meet each share of the surface.
+    Patches,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { gaussian: false, degree: 2, mixed: false, form: Form::Free, tolerance: tolerance::POINTS }
+        Options {
+            gaussian: false,
+            degree: 2,
+            mixed: false,
+            form: Form::Free,
+            tolerance: tolerance::POINTS,
+            lead: Lead::Guides,
+        }
     }
 }
 
@@ -97,6 +122,7 @@ pub struct PointSet {
     body: Body,
     closure: Option<Closure>,
     winding: Arc<OnceLock<Winding>>,
+    patches: Patches,
 }
 
 impl PointSet {
@@ -113,6 +139,7 @@ impl PointSet {
         } else {
             Kernel::Compact(Compact)
         };
+        let patches = Patches::new(hierarchy.cells(), options.lead);
         PointSet {
             id: next_id(),
             samples: Arc::new(hierarchy),
@@ -127,6 +154,7 @@ impl PointSet {
             body: Body::Sheet,
             closure: None,
             winding: Arc::default(),
+            patches,
         }
     }
 
@@ -143,6 +171,16 @@ impl PointSet {
     /// A bound of the error of a crossing along the normal, world length.
     pub fn tolerance(&self) -> f64 {
         self.tolerance
+    }
+
+    /// Of how many cells a guide was asked for so far, and how many have a guide and a patch.
+    pub fn patch_census(&self) -> [usize; 3] {
+        self.patches.census()
+    }
+
+    /// The same surface, whose rays make no patches.
+    pub fn without_patches(&self) -> PointSet {
+        PointSet { id: next_id(), patches: self.patches.guides_only(), ..self.clone() }
     }
 
     /// The winding number of the samples, built when first asked.

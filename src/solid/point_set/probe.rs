@@ -6,7 +6,7 @@ use super::hierarchy::{Hierarchy, Reach};
 use super::{Kernel, PointSet};
 use crate::geom::Ray;
 use crate::mls::{AnyWay, Compact, Evaluator, Facing, Guess, Neighbours, SameWay, Sample, Stray, Weight};
-use crate::solid::Body;
+use crate::solid::{Body, Counts};
 
 /// F at a place of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,25 +25,40 @@ pub(super) struct Probe {
 #[derive(Debug, Default)]
 pub(super) struct Room {
     near: Neighbours,
-    ready: bool,
+    /// Whose samples `near` lists.
+    of: Option<u64>,
+    /// Work so far.
+    pub work: Work,
+}
+
+/// Counts of work.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Work {
     /// Solves of plane and polynomial.
     pub projections: u64,
     /// How many of them lost a degree.
     pub falls: u64,
+    /// Guides made.
+    pub guides: u64,
+    /// Patches made.
+    pub patches: u64,
 }
 
 impl Room {
-    /// Forgets what was gathered: every line starts afresh, so that no answer depends on the line before.
-    pub fn forget(&mut self) {
-        self.ready = false;
+    /// Charges the work done since `before`.
+    pub fn charge(&self, before: Work, counts: &mut Counts) {
+        counts.projections += self.work.projections - before.projections;
+        counts.degree_falls += self.work.falls - before.falls;
+        counts.guides += self.work.guides - before.guides;
+        counts.patches += self.work.patches - before.patches;
     }
 }
 
-/// How far about the foot the first gathering reaches, local units: q is seldom farther from it, and what is gathered
-/// serves the next places of the line too.
-const REACH: f64 = 0.6;
-/// And the second, where the first did not suffice: the whole tube.
-const FAR_REACH: f64 = 2.0;
+/// How much farther than to a point and its foot the first gathering reaches, in widths there: q is seldom farther, and what
+/// is gathered serves the next places too.
+const REACH: f64 = 0.4;
+/// And the second, where the first did not suffice.
+const FAR_REACH: f64 = 2.5;
 
 impl PointSet {
     /// F at arc length `s` of a line of unit direction; `spheres` are the trust spheres of the band around it.
@@ -77,26 +92,16 @@ impl PointSet {
         // Samples of the edge itself may stand out by so many widths.
         const CLEAR: f64 = 0.25;
         let h = self.samples.widths[sample];
-        let (outward, reach) = (field.plane_normal, h * Compact.support().sqrt());
-        !room.near.any_ahead(field.foot, field.away, outward, CLEAR * h, reach)
-    }
-
-    /// The sample nearest to arc length `s`, in its own widths.
-    pub(super) fn nearest_sample(&self, line: &Ray, s: f64, spheres: &[Reach]) -> usize {
-        nearest(&self.samples, line.at(s), s, spheres)
-    }
-
-    /// grad F at arc length `s`.
-    pub(super) fn gradient_at(
-        &self,
-        line: &Ray,
-        s: f64,
-        spheres: &[Reach],
-        room: &mut Room,
-    ) -> Option<DVec3> {
-        let at = line.at(s);
-        let sample = nearest(&self.samples, at, s, spheres);
-        self.field_near(at, sample, room).ok().map(|f| f.gradient)
+        let support = Compact.support();
+        let (outward, reach) = (field.plane_normal, h * support.sqrt());
+        !room.near.any_ahead(
+            self.samples.blocks(),
+            field.foot,
+            field.away,
+            outward,
+            [CLEAR * h, reach],
+            support,
+        )
     }
 
     /// F at a point for which a sample is known whose trust sphere holds it.
@@ -134,12 +139,12 @@ impl PointSet {
         let width = self.samples.widths[sample];
         let guess = Guess { foot: at - outward * outward.dot(at - p), outward, width };
         let answer = self.gathered(evaluator, at, &guess, room);
-        room.projections += 1;
-        room.falls += u64::from(answer.is_ok_and(|f| f.degree < evaluator.degree));
+        room.work.projections += 1;
+        room.work.falls += u64::from(answer.is_ok_and(|f| f.degree < evaluator.degree));
         answer
     }
 
-    /// F from the samples gathered last where they suffice, else gathers anew.
+    /// F from the samples gathered last where they suffice, else gathers anew: the same either way.
     fn gathered<W: Weight, A: Facing>(
         &self,
         evaluator: &Evaluator<W, A>,
@@ -148,23 +153,25 @@ impl PointSet {
         room: &mut Room,
     ) -> Result<Sample, Stray> {
         let support = evaluator.weight.support();
-        if room.ready {
-            let answer = evaluator.sample(&room.near, at, guess);
+        let blocks = self.samples.blocks();
+        if room.of == Some(self.id) {
+            // Why there is none may depend on what was gathered; what there is does not.
+            let answer = evaluator.sample(blocks, &mut room.near, at, guess);
+            if answer.is_ok() {
+                return answer;
+            }
+        }
+        room.of = Some(self.id);
+        let (center, half) = (0.5 * (at + guess.foot), 0.5 * (at - guess.foot).length());
+        for more in [REACH, FAR_REACH] {
+            let reach = half + more * guess.width;
+            self.samples.gather(center, reach, support, guess.outward, &mut room.near);
+            let answer = evaluator.sample(blocks, &mut room.near, at, guess);
             if answer != Err(Stray::OutOfReach) {
                 return answer;
             }
         }
-        room.ready = true;
-        self.samples.gather(guess, REACH, support, &mut room.near);
-        let answer = evaluator.sample(&room.near, at, guess);
-        if answer != Err(Stray::OutOfReach) {
-            return answer;
-        }
-        self.samples.gather(guess, FAR_REACH, support, &mut room.near);
-        match evaluator.sample(&room.near, at, guess) {
-            Err(Stray::OutOfReach) => Err(Stray::Outside),
-            answer => answer,
-        }
+        Err(Stray::Outside)
     }
 }
 

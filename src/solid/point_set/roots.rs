@@ -19,6 +19,8 @@ pub(super) struct Root {
     pub entering: bool,
     /// Whether F jumps here instead of vanishing.
     pub jump: bool,
+    /// The cell whose patch it was found with.
+    pub cell: Option<u32>,
 }
 
 /// A stretch of a line on which F is defined, with the state at both ends.
@@ -169,6 +171,7 @@ impl Search<'_> {
                 shift: fa[0].abs().min(fb[0].abs()).min(b.s - a.s),
                 entering: fb[0] < fa[0],
                 jump: true,
+                cell: None,
             });
         }
     }
@@ -250,6 +253,7 @@ impl Search<'_> {
             shift: fa.abs().min(fb.abs()).min(cell.length),
             entering: fb < fa,
             jump,
+            cell: None,
         });
     }
 
@@ -277,7 +281,7 @@ impl Search<'_> {
                 // The slope cannot fall below this between the root and here.
                 let flattest = f[1].abs() - m * (2.0 * step.abs() + floor);
                 let err = (shift / flattest.max(0.0)).min(hi.0 - lo.0);
-                return Root { s: next, err, shift, entering, jump: false };
+                return Root { s: next, err, shift, entering, jump: false, cell: None };
             }
             at = if inside {
                 next
@@ -287,7 +291,7 @@ impl Search<'_> {
         }
         self.out.failures += 1;
         let (s, err) = (0.5 * (lo.0 + hi.0), 0.5 * (hi.0 - lo.0));
-        Root { s, err, shift: lo.1.abs().max(hi.1.abs()).min(err), entering, jump: false }
+        Root { s, err, shift: lo.1.abs().max(hi.1.abs()).min(err), entering, jump: false, cell: None }
     }
 }
 

@@ -55,9 +55,10 @@ impl PointSet {
     /// Which holes are open: more than half of the lines through them are odd. A rim that the surface spans, such as of a
     /// hole narrower than the weights, is none.
     pub fn open_holes(&self, lines: &[Vec<Ray>]) -> Vec<bool> {
+        let few = self.without_patches();
         let is_open = |lines: &Vec<Ray>| {
             let mut scratch = Scratch::default();
-            let odd = lines.iter().filter(|line| self.chord_is_odd(line, &mut scratch)).count();
+            let odd = lines.iter().filter(|line| few.chord_is_odd(line, &mut scratch)).count();
             lines.len() < 2 * odd
         };
         lines.par_iter().map(is_open).collect()
@@ -72,6 +73,8 @@ impl PointSet {
     fn measure_until(&self, most: f64) -> Solidity {
         let mut total =
             Solidity { chords: 0, odd: 0, open_holes: 0, missing: 0.0, counts: Counts::default() };
+        // Too few lines for patches to pay.
+        let few = self.without_patches();
         while total.chords < CHORDS && f64::from(total.odd) <= most {
             let batch = total.chords..total.chords + BATCH;
             let parts: Vec<(u32, Counts)> = batch
@@ -79,7 +82,7 @@ impl PointSet {
                 .with_min_len(16)
                 .map_init(Scratch::default, |scratch, i| {
                     scratch.counts = Counts::default();
-                    let odd = self.chord_is_odd(&self.chord(u64::from(i)), scratch);
+                    let odd = few.chord_is_odd(&self.chord(u64::from(i)), scratch);
                     (u32::from(odd), scratch.counts)
                 })
                 .collect();

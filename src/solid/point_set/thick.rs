@@ -96,10 +96,8 @@ impl PointSet {
     /// The surface with a thickness, `thickness` / 2 to each side; world length, above zero.
     pub fn thickened(&self, thickness: f64) -> Thick {
         let samples = &self.samples;
-        let drift = |room: &mut Room, i: usize| {
-            room.forget();
-            self.field_near(samples.points[i], i, room).map_or(0.0, |f| f.drift)
-        };
+        let drift =
+            |room: &mut Room, i: usize| self.field_near(samples.points[i], i, room).map_or(0.0, |f| f.drift);
         let all = (0..samples.points.len()).into_par_iter();
         Thick {
             id: next_id(),
@@ -273,9 +271,9 @@ impl Thick {
         if line.ray != Some(*ray) {
             line.ray = Some(*ray);
             let (unit, t0, per_s) = self.unit(ray);
-            let before = line.room.projections;
+            let before = line.room.work.projections;
             let found = self.search(&unit, &mut line.room, &mut line.near, counts);
-            counts.projections += line.room.projections - before;
+            counts.projections += line.room.work.projections - before;
             counts.crossings += found.len() as u64;
             line.found = found
                 .iter()
