@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use common::{Truth, all, chord, surface};
 use glam::DVec3;
-use pss::solid::point_set::Options;
+use pss::solid::point_set::{Lead, Options};
 use pss::solid::{Body, Scratch};
 
 const CHORDS: u64 = 4000;
@@ -23,7 +23,7 @@ fn main() {
     for truth in Truth::ALL {
         for samples in [10_000, 40_000] {
             for (gaussian, degree) in [(false, 2), (false, 3), (false, 4), (true, 2), (true, 3), (true, 4)] {
-                line(truth, samples, &Options { gaussian, degree, ..Options::default() });
+                line(truth, samples, &Options { gaussian, degree, lead: Lead::Search, ..Options::default() });
             }
         }
     }

@@ -1,0 +1,30 @@
+//! Times of point set surfaces, each with its error and beside what is asked of it: `cargo bench --bench surface`. Words after
+//! `--` choose parts by name. `PSS_LONG=1` adds clouds of ten million points.
+
+#[path = "../csg/clock.rs"]
+mod clock;
+#[path = "../../tests/common/mod.rs"]
+mod common;
+mod cut;
+mod evaluation;
+mod frames;
+#[path = "../csg/table.rs"]
+mod table;
+
+use table::Row;
+
+type Part = (&'static str, fn(&mut Vec<Row>));
+
+const PARTS: [Part; 3] = [("evaluation", evaluation::rows), ("frames", frames::rows), ("cut", cut::rows)];
+
+fn main() {
+    let asked: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
+    let mut rows = Vec::new();
+    for (name, run) in PARTS {
+        if asked.is_empty() || asked.iter().any(|a| name.contains(a.as_str())) {
+            eprintln!("{name}");
+            run(&mut rows);
+        }
+    }
+    table::print(&rows);
+}
