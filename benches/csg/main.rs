@@ -6,9 +6,7 @@ mod commands;
 mod rays;
 mod table;
 
-use table::Row;
-
-type Part = (&'static str, fn(&mut Vec<Row>));
+use table::Part;
 
 const PARTS: [Part; 7] = [
     ("two_leaves", rays::two_leaves),
@@ -21,13 +19,5 @@ const PARTS: [Part; 7] = [
 ];
 
 fn main() {
-    let asked: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
-    let mut rows = Vec::new();
-    for (name, run) in PARTS {
-        if asked.is_empty() || asked.iter().any(|a| name.contains(a.as_str())) {
-            eprintln!("{name}");
-            run(&mut rows);
-        }
-    }
-    table::print(&rows);
+    table::run(&PARTS);
 }

@@ -16,8 +16,24 @@ impl Row {
     }
 }
 
+/// A part of a bench by its name.
+pub type Part = (&'static str, fn(&mut Vec<Row>));
+
+/// Runs the parts whose names hold one of the words of the command line, all where there are none, and prints their rows.
+pub fn run(parts: &[Part]) {
+    let asked: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
+    let mut rows = Vec::new();
+    for (name, run) in parts {
+        if asked.is_empty() || asked.iter().any(|a| name.contains(a.as_str())) {
+            eprintln!("{name}");
+            run(&mut rows);
+        }
+    }
+    print(&rows);
+}
+
 /// Prints rows as Markdown.
-pub fn print(rows: &[Row]) {
+fn print(rows: &[Row]) {
     println!("| what | measured | unit | asked |");
     println!("|---|---|---|---|");
     for Row { what, value, unit, asked } in rows {

@@ -9,8 +9,8 @@ use pss::solid::point_set::{Lead, Options, PointSet};
 use pss::solid::{Body, Crossing, Scratch, Solid};
 
 use crate::clock::{command_seconds, median, runs_a_round};
-use crate::common::Truth;
-use crate::frames;
+use crate::common::{Truth, first_below, rays_of_eye, widths};
+use crate::frames::SIDE;
 use crate::table::Row;
 
 const BOX: Aabb = Aabb { min: glam::DVec3::new(0.15, 0.2, 0.1), max: glam::DVec3::new(3.0, 3.0, 3.0) };
@@ -94,15 +94,11 @@ fn first(crossings: &[Crossing], cut: Interval) -> Option<f64> {
 
 /// The root mean square error along the rays, over the diagonal, and how many rays hit or miss wrongly.
 fn error(points: &[glam::DVec3], normals: &[glam::DVec3], smoothing: f64) -> (f64, f64) {
-    use pss::cloud::{neighbours::Neighbours, spacing};
-    let table = Neighbours::new(points).table(6);
-    let spacing = spacing::spacing(points, &table);
-    let widths: Vec<f64> = spacing::widths(&spacing, &table).iter().map(|h| smoothing * h).collect();
     let options = Options { degree: DEGREE, tolerance: TOLERANCE, lead: Lead::Guides, ..Options::default() };
-    let set = PointSet::new(points, normals, &widths, &options).with_body(Body::Solid);
+    let set = PointSet::new(points, normals, &widths(points, smoothing), &options).with_body(Body::Solid);
     let (mut scratch, mut found) = (Scratch::default(), Vec::new());
     let (mut squares, mut count, mut missed) = (0.0, 0u32, 0u32);
-    for ray in frames::rays().iter().step_by(7) {
+    for ray in rays_of_eye(SIDE).iter().step_by(7) {
         found.clear();
         let mut lo = 0.0;
         while lo < f64::INFINITY {
@@ -128,18 +124,11 @@ fn truth(ray: &Ray) -> Option<(f64, f64)> {
         let p = ray.at(t);
         Truth::Blob.implicit(p).max(-beyond(p))
     };
-    const STEPS: usize = 600;
-    let at = |i: usize| 2.0 + 4.0 * i as f64 / STEPS as f64;
-    let i = (0..STEPS).find(|&i| inside(at(i + 1)) < 0.0)?;
-    let (mut a, mut b) = (at(i), at(i + 1));
-    for _ in 0..60 {
-        let t = 0.5 * (a + b);
-        if inside(t) < 0.0 { b = t } else { a = t }
-    }
-    let p = ray.at(b);
+    let t = first_below(inside, 2.0, 6.0, 600)?;
+    let p = ray.at(t);
     let on_blob = Truth::Blob.implicit(p).abs() < beyond(p).abs();
     let normal = if on_blob { Truth::Blob.gradient(p).normalize() } else { face(p) };
-    Some((b, normal.dot(ray.dir).abs()))
+    Some((t, normal.dot(ray.dir).abs()))
 }
 
 /// Above zero outside the box.

@@ -1,26 +1,15 @@
 //! Frames of 512 x 512 rays of one eye on the blob, the same again in one process: cold and warm, one thread.
 
-use glam::DVec3;
 use pss::geom::{Interval, Ray};
 use pss::solid::point_set::{Lead, Options, PointSet};
 use pss::solid::{Body, Crossing, Scratch, Solid};
 
 use crate::clock::median_seconds;
-use crate::common::{Truth, surface};
+use crate::common::{Truth, rays_of_eye, surface};
 use crate::table::Row;
 
-/// The rays of the peers' measurements.
-pub fn rays() -> Vec<Ray> {
-    const SIDE: usize = 512;
-    let eye = DVec3::new(2.2, 1.8, 2.8);
-    let ahead = -eye.normalize();
-    let right = ahead.cross(DVec3::Y).normalize();
-    let up = right.cross(ahead);
-    let half = 18f64.to_radians().tan();
-    let at = |i: usize| (2.0 * (i as f64 + 0.5) / SIDE as f64 - 1.0) * half;
-    let dir = |k: usize| (ahead + at(k % SIDE) * right - at(k / SIDE) * up).normalize();
-    (0..SIDE * SIDE).map(|k| Ray::new(eye, dir(k))).collect()
-}
+/// Rays each way.
+pub const SIDE: usize = 512;
 
 /// What a frame found.
 #[derive(Default)]
@@ -56,7 +45,7 @@ fn frame(
 /// 100,000 samples at several tolerances.
 pub fn rows(rows: &mut Vec<Row>) {
     let (points, normals) = Truth::Blob.cloud(100_000);
-    let (rays, diagonal) = (rays(), Truth::Blob.diagonal());
+    let (rays, diagonal) = (rays_of_eye(SIDE), Truth::Blob.diagonal());
     for tolerance in [1e-6, 1e-9] {
         let options = Options { degree: 3, tolerance, lead: Lead::Patches, ..Options::default() };
         let set = surface(&points, &normals, &options).with_body(Body::Solid);

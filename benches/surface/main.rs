@@ -11,20 +11,10 @@ mod frames;
 #[path = "../csg/table.rs"]
 mod table;
 
-use table::Row;
-
-type Part = (&'static str, fn(&mut Vec<Row>));
+use table::Part;
 
 const PARTS: [Part; 3] = [("evaluation", evaluation::rows), ("frames", frames::rows), ("cut", cut::rows)];
 
 fn main() {
-    let asked: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
-    let mut rows = Vec::new();
-    for (name, run) in PARTS {
-        if asked.is_empty() || asked.iter().any(|a| name.contains(a.as_str())) {
-            eprintln!("{name}");
-            run(&mut rows);
-        }
-    }
-    table::print(&rows);
+    table::run(&PARTS);
 }

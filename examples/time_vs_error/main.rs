@@ -17,7 +17,7 @@ mod plot;
 use std::fmt::Write;
 use std::time::Instant;
 
-use common::Truth;
+use common::{Truth, first_below, rays_of_eye, widths};
 use glam::{DQuat, DVec3};
 use pss::geom::Ray;
 use pss::mls::Compact;
@@ -65,14 +65,7 @@ const SHAPE: Truth = Truth::Blob;
 
 impl Bench {
     fn new(side: usize) -> Bench {
-        let eye = DVec3::new(2.2, 1.8, 2.8);
-        let ahead = -eye.normalize();
-        let right = ahead.cross(DVec3::Y).normalize();
-        let up = right.cross(ahead);
-        let half = 18f64.to_radians().tan();
-        let at = |i: usize| (2.0 * (i as f64 + 0.5) / side as f64 - 1.0) * half;
-        let dir = |k: usize| (ahead + at(k % side) * right - at(k / side) * up).normalize();
-        let rays: Vec<Ray> = (0..side * side).map(|k| Ray::new(eye, dir(k))).collect();
+        let rays = rays_of_eye(side);
         let truth = rays.iter().map(first_of_truth).collect();
         Bench { rays, truth, diagonal: SHAPE.diagonal() }
     }
@@ -171,15 +164,7 @@ impl Bench {
 
 /// The first crossing of the blob itself: steps, then halving.
 fn first_of_truth(ray: &Ray) -> Option<f64> {
-    const STEPS: usize = 2000;
-    let at = |i: usize| 1.5 + 4.5 * i as f64 / STEPS as f64;
-    let i = (0..STEPS).find(|&i| SHAPE.implicit(ray.at(at(i + 1))) < 0.0)?;
-    let (mut a, mut b) = (at(i), at(i + 1));
-    for _ in 0..60 {
-        let s = 0.5 * (a + b);
-        if SHAPE.implicit(ray.at(s)) < 0.0 { b = s } else { a = s }
-    }
-    Some(b)
+    first_below(|t| SHAPE.implicit(ray.at(t)), 1.5, 6.0, 2000)
 }
 
 /// Samples of the blob.
@@ -207,8 +192,8 @@ impl Cloud {
     }
 
     fn surface(&self, smoothing: f64, options: &Options) -> PointSet {
-        let widths = methods::widths(&self.points, smoothing);
-        PointSet::new(&self.points, &self.normals, &widths, options).with_body(Body::Solid)
+        PointSet::new(&self.points, &self.normals, &widths(&self.points, smoothing), options)
+            .with_body(Body::Solid)
     }
 }
 

@@ -1,7 +1,6 @@
 //! Ways to meet a cloud of points with a ray: each gives the first crossing of a line from outside, or none.
 
 use glam::DVec3;
-use pss::cloud::neighbours::Neighbours;
 use pss::geom::{Interval, Ray};
 use pss::mesh::Mesh;
 use pss::mls::{Sample, Weight};
@@ -78,31 +77,37 @@ pub struct Iteration {
 /// More rounds than this do not come to rest.
 const ROUNDS: usize = 20;
 
+/// Where places of a stretch of the line, each the `next` of the one before, come to rest; none where they leave it.
+fn rest(
+    stretch: Interval,
+    tolerance: f64,
+    mut s: f64,
+    mut next: impl FnMut(f64) -> Option<f64>,
+) -> Option<f64> {
+    for _ in 0..ROUNDS {
+        let after = next(s).filter(|after| stretch.contains(*after))?;
+        if (after - s).abs() <= tolerance {
+            return Some(after);
+        }
+        s = after;
+    }
+    None
+}
+
 impl Method for Iteration {
     fn first(&mut self, line: &Ray) -> Option<f64> {
-        for (range, sample) in stretches(&self.set, line) {
-            let center = self.set.samples().points[sample];
-            let mut s = (center - line.origin).dot(line.dir);
-            let mut at = center;
-            for _ in 0..ROUNDS {
-                let Ok(Sample { value, plane_normal, fit_normal, .. }) =
-                    self.set.field(at, &mut self.scratch)
-                else {
-                    break;
-                };
+        let Iteration { set, tolerance, scratch } = self;
+        stretches(set, line).into_iter().find_map(|(range, sample)| {
+            // The centre of the sphere first, which need not lie on the line.
+            let center = set.samples().points[sample];
+            let mut begin = Some(center);
+            rest(range, *tolerance, (center - line.origin).dot(line.dir), |s| {
+                let at = begin.take().unwrap_or_else(|| line.at(s));
+                let Sample { value, plane_normal, fit_normal, .. } = set.field(at, scratch).ok()?;
                 let on = at - value * plane_normal;
-                let next = (on - line.origin).dot(fit_normal) / line.dir.dot(fit_normal);
-                if !range.contains(next) {
-                    break;
-                }
-                if (next - s).abs() <= self.tolerance {
-                    return Some(next);
-                }
-                s = next;
-                at = line.at(s);
-            }
-        }
-        None
+                Some((on - line.origin).dot(fit_normal) / line.dir.dot(fit_normal))
+            })
+        })
     }
 
     fn projections(&self) -> u64 {
@@ -188,21 +193,13 @@ impl Means {
 
 impl Method for Means {
     fn first(&mut self, line: &Ray) -> Option<f64> {
-        for (range, sample) in stretches(&self.set, line) {
-            let mut s = (self.set.samples().points[sample] - line.origin).dot(line.dir);
-            for _ in 0..ROUNDS {
-                let Some((a, n)) = self.plane(line.at(s)) else { break };
-                let next = (a - line.origin).dot(n) / line.dir.dot(n);
-                if !range.contains(next) {
-                    break;
-                }
-                if (next - s).abs() <= self.tolerance {
-                    return Some(next);
-                }
-                s = next;
-            }
-        }
-        None
+        stretches(&self.set, line).into_iter().find_map(|(range, sample)| {
+            let from = (self.set.samples().points[sample] - line.origin).dot(line.dir);
+            rest(range, self.tolerance, from, |s| {
+                let (a, n) = self.plane(line.at(s))?;
+                Some((a - line.origin).dot(n) / line.dir.dot(n))
+            })
+        })
     }
 }
 
@@ -286,12 +283,4 @@ impl Method for Triangles {
         self.mesh.crossings(line, Interval::AHEAD, &mut self.scratch, &mut self.found);
         self.found.first().map(|c| c.t)
     }
-}
-
-/// The nearest samples, for widths.
-pub fn widths(points: &[DVec3], factor: f64) -> Vec<f64> {
-    use pss::cloud::spacing;
-    let table = Neighbours::new(points).table(6);
-    let spacing = spacing::spacing(points, &table);
-    spacing::widths(&spacing, &table).into_iter().map(|h| factor * h).collect()
 }

@@ -43,6 +43,15 @@ impl Interval {
         Interval { lo: self.lo.max(other.lo), hi: self.hi.min(other.hi) }
     }
 
+    /// Makes one of ascending intervals that touch.
+    pub fn unite(ascending: &mut Vec<Interval>) {
+        ascending.dedup_by(|next, last| {
+            let touch = next.lo <= last.hi;
+            last.hi = if touch { last.hi.max(next.hi) } else { last.hi };
+            touch
+        });
+    }
+
     /// Length in `t`.
     pub fn length(self) -> f64 {
         self.hi - self.lo

@@ -5,6 +5,7 @@ use fearless_simd::{Simd, prelude::*};
 use glam::DVec3;
 
 use crate::num::lanes::{LANES, Lanes, Lanes3};
+use crate::num::median::median;
 
 /// Samples in blocks. Positions are kept in a unit that is a power of two near the median width: converted without
 /// rounding, and far from overflow at any scale.
@@ -35,7 +36,7 @@ const THIN: f64 = 1e-6;
 impl Blocks {
     /// Positions and widths are world lengths, normals outward and of unit length; one of each a sample.
     pub fn new(points: &[DVec3], normals: &[DVec3], widths: &[f64]) -> Blocks {
-        let unit = power_of_two(median(widths));
+        let unit = power_of_two(median(widths.to_vec()));
         let per_unit = 1.0 / unit;
         let count = points.len();
         let block = |b: usize| {
@@ -87,7 +88,7 @@ impl Blocks {
     }
 }
 
-/// Near of the blocks, in ascending order.
+/// Some of the blocks, in ascending order.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Near<'a> {
     pub all: &'a Blocks,
@@ -123,10 +124,4 @@ fn power_of_two(x: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff << 52;
     let power = f64::from_bits(x.to_bits() & EXPONENT);
     if power.is_normal() { power } else { 1.0 }
-}
-
-fn median(widths: &[f64]) -> f64 {
-    let mut sorted = widths.to_vec();
-    let middle = sorted.len() / 2;
-    if sorted.is_empty() { 1.0 } else { *sorted.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }

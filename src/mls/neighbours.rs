@@ -40,8 +40,8 @@ impl Neighbours {
 
     /// Looks at the normals of what was pushed.
     pub fn settle(&mut self, blocks: &Blocks) {
-        let some = Near { all: blocks, list: &self.list };
-        self.least = dispatch!(Level::new(), simd => least_in(simd, some, self.outward));
+        let near = Near { all: blocks, list: &self.list };
+        self.least = dispatch!(Level::new(), simd => least_in(simd, near, self.outward));
     }
 
     /// Every block there is.
@@ -93,14 +93,14 @@ impl Neighbours {
     ) -> bool {
         let per_unit = blocks.per_unit();
         let (from, clear, reach) = (from * per_unit, clear * per_unit, reach * per_unit);
-        let some = self.listed(blocks);
+        let near = self.listed(blocks);
         dispatch!(Level::new(), simd => {
-            (0..some.len()).any(|b| {
-                let (p, ih2) = some.block(simd, b);
+            (0..near.len()).any(|b| {
+                let (p, ih2) = near.block(simd, b);
                 let x = p.minus(from);
                 let (along, square) = (x.dot(ahead), x.length_squared());
                 let rho = square * ih2;
-                let faces = some.normals(simd, b).dot(outward);
+                let faces = near.normals(simd, b).dot(outward);
                 (0..LANES).any(|i| {
                     0.0 < faces[i]
                         && clear <= along[i]
@@ -114,10 +114,10 @@ impl Neighbours {
 }
 
 #[inline(always)]
-fn least_in<S: Simd>(simd: S, some: Near, outward: DVec3) -> f64 {
+fn least_in<S: Simd>(simd: S, near: Near, outward: DVec3) -> f64 {
     let mut least = Lanes::splat(simd, 1.0);
-    for b in 0..some.len() {
-        least = least.min(some.normals(simd, b).dot(outward));
+    for b in 0..near.len() {
+        least = least.min(near.normals(simd, b).dot(outward));
     }
     (0..LANES).map(|i| least[i]).fold(1.0, f64::min)
 }

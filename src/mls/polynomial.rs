@@ -19,6 +19,7 @@ use super::plane::Plane;
 use super::{Facing, Stray, Weight};
 use crate::num::cholesky::Cholesky;
 use crate::num::lanes::{Lanes, sum};
+use crate::num::monomials::{coefficients, exponents, index};
 use fearless_simd::{Level, Simd, dispatch, prelude::*};
 use glam::DVec3;
 
@@ -27,32 +28,8 @@ pub(super) const MAX_COEFFICIENTS: usize = 15;
 const MAX_MOMENTS: usize = 45;
 const MAX_POWERS: usize = 2 * MAX_DEGREE + 1;
 
-/// How many coefficients a degree has.
-pub(super) const fn coefficients(degree: usize) -> usize {
-    (degree + 1) * (degree + 2) / 2
-}
-
-/// The place of u^a v^b: all of a lower total degree first.
-pub(super) const fn index(a: usize, b: usize) -> usize {
-    let d = a + b;
-    d * (d + 1) / 2 + b
-}
-
 /// The exponents of u and v in the order of [`index`].
-const EXPONENTS: [(usize, usize); MAX_MOMENTS] = {
-    let mut all = [(0, 0); MAX_MOMENTS];
-    let mut i = 0;
-    while i < MAX_MOMENTS {
-        let mut d = 0;
-        while coefficients(d) <= i {
-            d += 1;
-        }
-        let b = i - index(d, 0);
-        all[i] = (d - b, b);
-        i += 1;
-    }
-    all
-};
+const EXPONENTS: [(usize, usize); MAX_MOMENTS] = exponents();
 
 /// A fitted polynomial with what its derivatives need.
 #[derive(Clone, Copy, Debug)]

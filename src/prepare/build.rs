@@ -12,6 +12,7 @@ use crate::cloud::scraps::bounding;
 use crate::cloud::winding::Winding;
 use crate::cloud::{Cloud, CloudError, CloudFault, NormalSource, SampleOptions, Samples, is_single, ply};
 use crate::diag::{Diagnostic, Fault};
+use crate::num::median::median;
 use crate::scene::{Call, MaterialId, ShapeNode, Value};
 use crate::shot::Material;
 use crate::solid::point_set::{Lead, Options, PointSet, Solidity};
@@ -175,7 +176,7 @@ impl<'a> Builder<'a> {
         if let Some(name) = ["h", "smoothing"].into_iter().find(|name| call.get(name).is_some())
             && let Some(message) = fitness::too_wide(&samples)
         {
-            let spacing = fitness::median(samples.spacing.clone());
+            let spacing = median(samples.spacing.clone());
             let help = format!("samples are {spacing:.4} apart, and twice that is a usual width");
             return Err(Diagnostic::error("E0605", message).at(call.place(name), "").help(help));
         }

@@ -5,6 +5,7 @@ use glam::DVec3;
 use crate::cloud::Samples;
 use crate::cloud::neighbours::{Near, Neighbours};
 use crate::num::eigen::symmetric3;
+use crate::num::median::median;
 
 /// A wall thinner than so many widths is not told apart: no sample's side of it is certain.
 const THINNEST: f64 = 1.25;
@@ -113,12 +114,6 @@ impl Fitness {
         }
         out
     }
-}
-
-/// The middle one of some values; 0 of none.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 /// Samples spread over the cloud.

@@ -147,17 +147,46 @@ impl Truth {
     }
 }
 
+/// So many rays each way of the eye of the peers' measurements, of unit direction, row by row from the top left.
+pub fn rays_of_eye(side: usize) -> Vec<pss::geom::Ray> {
+    let eye = DVec3::new(2.2, 1.8, 2.8);
+    let ahead = -eye.normalize();
+    let right = ahead.cross(DVec3::Y).normalize();
+    let up = right.cross(ahead);
+    let half = 18f64.to_radians().tan();
+    let at = |i: usize| (2.0 * (i as f64 + 0.5) / side as f64 - 1.0) * half;
+    let dir = |k: usize| (ahead + at(k % side) * right - at(k / side) * up).normalize();
+    (0..side * side).map(|k| pss::geom::Ray::new(eye, dir(k))).collect()
+}
+
+/// Where a function first falls below zero on the way from `from` to `to`, by so many steps and halving; what dips between
+/// two steps is passed over.
+pub fn first_below(f: impl Fn(f64) -> f64, from: f64, to: f64, steps: usize) -> Option<f64> {
+    let at = |i: usize| from + (to - from) * i as f64 / steps as f64;
+    let i = (0..steps).find(|&i| f(at(i + 1)) < 0.0)?;
+    let (mut a, mut b) = (at(i), at(i + 1));
+    for _ in 0..60 {
+        let t = 0.5 * (a + b);
+        if f(t) < 0.0 { b = t } else { a = t }
+    }
+    Some(b)
+}
+
+/// The automatic widths of samples, times a factor.
+pub fn widths(points: &[DVec3], smoothing: f64) -> Vec<f64> {
+    use pss::cloud::{neighbours::Neighbours, spacing};
+    let table = Neighbours::new(points).table(6);
+    let spacing = spacing::spacing(points, &table);
+    spacing::widths(&spacing, &table).into_iter().map(|h| smoothing * h).collect()
+}
+
 /// A surface through samples, with the automatic widths.
 pub fn surface(
     points: &[DVec3],
     normals: &[DVec3],
     options: &pss::solid::point_set::Options,
 ) -> pss::solid::point_set::PointSet {
-    use pss::cloud::{neighbours::Neighbours, spacing};
-    let table = Neighbours::new(points).table(6);
-    let spacing = spacing::spacing(points, &table);
-    let widths = spacing::widths(&spacing, &table);
-    pss::solid::point_set::PointSet::new(points, normals, &widths, options)
+    pss::solid::point_set::PointSet::new(points, normals, &widths(points, 1.0), options)
 }
 
 /// The `i`-th random chord of a sphere.

@@ -157,14 +157,8 @@ struct Level {
 fn merged(stretches: impl Iterator<Item = Interval>) -> Vec<Interval> {
     let mut all: Vec<Interval> = stretches.filter(|s| !s.is_empty()).collect();
     all.sort_by(|a, b| a.lo.total_cmp(&b.lo));
-    let mut out: Vec<Interval> = Vec::with_capacity(all.len());
-    for next in all {
-        match out.last_mut() {
-            Some(last) if next.lo <= last.hi => last.hi = last.hi.max(next.hi),
-            _ => out.push(next),
-        }
-    }
-    out
+    Interval::unite(&mut all);
+    all
 }
 
 /// Makes the states alternate from one end of the gap to the other. Between its ends the winding number decides, at its

@@ -46,7 +46,7 @@ pub(super) enum Verdict {
 }
 
 /// F is a sum over hundreds of samples: its rounding, in widths.
-const ROUNDING: f64 = 1e-14;
+pub(super) const ROUNDING: f64 = 1e-14;
 /// Clean and noisy tori showed at most |F''| = 0.43/h, clean scans about 0.5/h in all but one place in a hundred.
 const USUAL_CURVATURE: f64 = 1.0;
 /// |F''''| h^3 reached 14 on a sphere with noise of 0.3 spacings, and stays below 20 in 999 places of 1,000 of clean scans.

@@ -108,6 +108,11 @@ pub struct Reach {
     pub sample: u32,
 }
 
+/// Puts trust spheres in the order in which a line meets them.
+pub(super) fn in_order(spheres: &mut [Reach]) {
+    spheres.sort_unstable_by(|a, b| a.range.lo.total_cmp(&b.range.lo).then(a.sample.cmp(&b.sample)));
+}
+
 impl Hierarchy {
     /// Builds it; `O(n log n)`, the same for any number of threads.
     pub fn new(points: &[DVec3], normals: &[DVec3], widths: &[f64]) -> Hierarchy {
@@ -152,6 +157,13 @@ impl Hierarchy {
                 out.push(Reach { range: Interval::new(middle - half, middle + half), sample: i as u32 });
             }
         }
+    }
+
+    /// The trust spheres of some cells that a line of unit direction meets, in order.
+    pub fn spheres_on(&self, cells: &[CellOn], line: &Ray, out: &mut Vec<Reach>) {
+        out.clear();
+        cells.iter().for_each(|c| self.spheres_of(c.cell as usize, line, out));
+        in_order(out);
     }
 
     /// The samples of a cell.

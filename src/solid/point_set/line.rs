@@ -54,6 +54,7 @@ pub struct LineScratch {
     room: Room,
     quick: QuickRoom,
     searched: Findings,
+    states: Vec<(f64, bool, bool)>,
     stack: Vec<Stretch>,
     caps: Vec<Cap>,
 }
@@ -248,8 +249,8 @@ impl PointSet {
     /// not fit together, or not to what the samples at the ends of the band say.
     fn around_rough(&self, line: &mut LineScratch, index: usize, unit: &Ray) -> bool {
         let Band { cells, .. } = line.bands[index];
-        self.spheres_in(line, cells, unit);
-        let LineScratch { reaches, found, room, quick, stack, searched, .. } = line;
+        self.samples.spheres_on(&line.cells[cells[0]..cells[1]], unit, &mut line.reaches);
+        let LineScratch { reaches, found, room, quick, stack, searched, states, .. } = line;
         let found = &mut found[index];
         searched.clear();
         for rough in &quick.rough {
@@ -262,8 +263,8 @@ impl PointSet {
             && searched.pieces.iter().zip(&quick.rough).all(|(piece, rough)| piece.range == *rough);
         let pieces = searched.pieces.iter();
         // Where each begins, and the states before and after it.
-        let mut states: Vec<(f64, bool, bool)> =
-            pieces.map(|p| (p.range.lo, p.inside[0], p.inside[1])).collect();
+        states.clear();
+        states.extend(pieces.map(|p| (p.range.lo, p.inside[0], p.inside[1])));
         states.extend(found.roots.iter().map(|r| (r.s, !r.entering, r.entering)));
         states.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         let (Some(first), Some(last)) = (states.first(), states.last()) else { return false };
@@ -284,19 +285,10 @@ impl PointSet {
         fits
     }
 
-    /// Collects the trust spheres of some cells that a line meets, sorted.
-    fn spheres_in(&self, line: &mut LineScratch, cells: [usize; 2], unit: &Ray) {
-        line.reaches.clear();
-        for cell in &line.cells[cells[0]..cells[1]] {
-            self.samples.spheres_of(cell.cell as usize, unit, &mut line.reaches);
-        }
-        line.reaches.sort_unstable_by(|a, b| a.range.lo.total_cmp(&b.range.lo).then(a.sample.cmp(&b.sample)));
-    }
-
     /// Isolates the roots of F in a band, in each stretch of overlapping trust spheres.
     fn by_search(&self, line: &mut LineScratch, band: Band, index: usize) {
         let unit = line.line.unwrap_or(Ray::new(DVec3::ZERO, DVec3::Z));
-        self.spheres_in(line, band.cells, &unit);
+        self.samples.spheres_on(&line.cells[band.cells[0]..band.cells[1]], &unit, &mut line.reaches);
         let mut from = 0;
         while from < line.reaches.len() {
             let mut range = line.reaches[from].range;

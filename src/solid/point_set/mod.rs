@@ -36,6 +36,7 @@ use crate::cloud::winding::Winding;
 use crate::cloud::{AREA_NEIGHBOURS, AREA_REACH, areas};
 use crate::geom::{Aabb, Interval, Ray, tolerance};
 use crate::mls::{Compact, Form, Gaussian};
+use crate::num::median::median;
 use crate::solid::{Answer, Body, Cost, Crossing, Scratch, Solid};
 
 /// Which weight.
@@ -148,7 +149,7 @@ impl PointSet {
             mixed: options.mixed,
             form: options.form,
             tolerance: options.tolerance * diagonal,
-            grain: roots::WALL * median(widths),
+            grain: roots::WALL * median(widths.to_vec()),
             bounds,
             colors: None,
             body: Body::Sheet,
@@ -203,12 +204,6 @@ impl PointSet {
 /// How far the tree of the winding number is opened for caps: errors near 1e-4 (rms), ten times below what the usual
 /// opening gives, so that a cap and its normal look flat.
 const CAP_OPENING: f64 = 4.0;
-
-fn median(widths: &[f64]) -> f64 {
-    let mut sorted = widths.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
-}
 
 fn next_id() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(0);

@@ -4,8 +4,8 @@
 use glam::DVec3;
 
 use super::PointSet;
-use super::certificate::lower_bound;
-use super::hierarchy::{CellOn, Reach};
+use super::certificate::{ROUNDING, lower_bound};
+use super::hierarchy::{CellOn, Reach, in_order};
 use super::patch::{Follows, Local, Patch};
 use super::probe::Room;
 use super::roots::{Findings, Piece, Root};
@@ -20,6 +20,10 @@ const SAME: f64 = 4.0;
 const BELIEVED: f64 = 4.0;
 /// |F''| is at most this over the width where there are patches: clean tori showed 0.43 at most.
 const CURVATURE: f64 = 1.0;
+/// A root of a patch's polynomial is good enough within this share of the patch's error.
+const ENOUGH: f64 = 0.01;
+/// Steps to it at most: Newton's need three or four.
+const HALVINGS: usize = 40;
 /// Newton's steps from a patch: one nearly always.
 const STEPS: usize = 4;
 /// A patch whose slopes are known to this, radians, gives normals: the surface's own are off by ten times as much.
@@ -91,7 +95,6 @@ impl PointSet {
         let QuickRoom { hits, follows, rough, spheres, .. } = quick;
         hits.clear();
         follows.clear();
-        rough.clear();
         spheres.clear();
         for cell in cells {
             let Some(Follows { patch, id }) = self.patches.get(self, cell.cell as usize, room) else {
@@ -108,7 +111,8 @@ impl PointSet {
         }
         // What follows several cells may be crossed in another band too: each crossing is that of the band about it.
         hits.retain(|h| band.contains(h.s));
-        unite(spheres, rough);
+        in_order(spheres);
+        stretches(spheres, rough);
         // There F is asked, and where what is followed may cross at the end of such a stretch.
         grow(rough, hits);
         hits.retain(|h| !rough.iter().any(|r| r.contains(h.s)));
@@ -144,13 +148,11 @@ impl PointSet {
         if let Some(inside) = ends.filter(|_| hits.iter().all(|h| h.err <= h.certain)) {
             return Ok(Some(Piece { range: band, inside, roots: [0, roots.len()] }));
         }
-        spheres.clear();
-        rough.clear();
-        cells.iter().for_each(|c| self.samples.spheres_of(c.cell as usize, line, spheres));
+        self.samples.spheres_on(cells, line, spheres);
         if spheres.is_empty() {
             return if roots.is_empty() { Ok(None) } else { Err(Doubt) };
         }
-        unite(spheres, rough);
+        stretches(spheres, rough);
         let range = Interval::new(rough[0].lo, rough[rough.len() - 1].hi);
         let at = |s: f64| self.side(line.at(s), cells).ok_or(Doubt);
         let inside = [at(range.lo)?, at(range.hi)?];
@@ -175,14 +177,7 @@ impl PointSet {
         room: &mut Room,
         counts: &mut Counts,
     ) -> Option<Root> {
-        let root = Root {
-            s: hit.s,
-            err: hit.err,
-            shift: patch.error,
-            entering: hit.entering,
-            jump: false,
-            cell: Some(hit.cell),
-        };
+        let root = Root { s: hit.s, err: hit.err, shift: patch.error, entering: hit.entering, jump: false };
         if patch.error <= self.tolerance {
             counts.patch_hits += 1;
             return Some(root);
@@ -201,7 +196,7 @@ impl PointSet {
             let step = -field.value / slope;
             s += step;
             // Newton's remainder.
-            let shift = 0.5 * m * step * step + 1e-14 * patch.width;
+            let shift = 0.5 * m * step * step + ROUNDING * patch.width;
             if shift <= 0.5 * self.tolerance {
                 let flattest = slope.abs() - 2.0 * m * step.abs();
                 return (0.0 < flattest).then_some(Root { s, err: shift / flattest, shift, ..root });
@@ -222,7 +217,7 @@ impl PointSet {
         if self.patches.are_none() {
             return None;
         }
-        let mut best: Option<(f64, &Patch)> = None;
+        let mut best: Option<(f64, &Patch, Local)> = None;
         for cell in cells.iter().filter(|c| c.range.contains(s)) {
             let Some(Follows { patch, .. }) = self.patches.get(self, cell.cell as usize, room) else {
                 continue;
@@ -232,11 +227,11 @@ impl PointSet {
             let on = off <= 1.0
                 && patch.lean <= LEAN
                 && patch.height(&local, s)[0].abs() <= SAME * patch.local_error();
-            if on && best.is_none_or(|(least, _)| off < least) {
-                best = Some((off, patch));
+            if on && best.is_none_or(|(least, ..)| off < least) {
+                best = Some((off, patch, local));
             }
         }
-        best.map(|(_, patch)| patch.normal(line, s))
+        best.map(|(_, patch, local)| patch.normal(&local, s))
     }
 
     /// The sample of some cells that a point is nearest to, in that sample's own widths (ties by index).
@@ -302,9 +297,8 @@ fn refine(patch: &Patch, local: &Local, cell: u32, mut a: End, mut b: End) -> Hi
     let entering = b.g[0] < a.g[0];
     let mut s = a.s + (b.s - a.s) * (a.g[0] / (a.g[0] - b.g[0]));
     let mut slope = (b.g[0] - a.g[0]) / (b.s - a.s);
-    // Far below the patch's error, in z.
-    let enough = 0.01 * patch.local_error();
-    for _ in 0..40 {
+    let enough = ENOUGH * patch.local_error();
+    for _ in 0..HALVINGS {
         let here = End { s, g: patch.height(local, s) };
         slope = here.g[1];
         if (here.g[0] < 0.0) == (a.g[0] < 0.0) {
@@ -323,19 +317,15 @@ fn refine(patch: &Patch, local: &Local, cell: u32, mut a: End, mut b: End) -> Hi
             break;
         }
     }
-    let err = 1.02 * patch.local_error() / slope.abs();
+    let err = (1.0 + 2.0 * ENOUGH) * patch.local_error() / slope.abs();
     Hit { s, err, entering, cell, eccentricity: patch.eccentricity(local, s), certain: CERTAIN * patch.width }
 }
 
-/// Stretches of overlapping trust spheres, ascending.
-fn unite(spheres: &mut [Reach], out: &mut Vec<Interval>) {
-    spheres.sort_unstable_by(|a, b| a.range.lo.total_cmp(&b.range.lo).then(a.sample.cmp(&b.sample)));
-    for Reach { range, .. } in spheres {
-        match out.last_mut() {
-            Some(last) if range.lo <= last.hi => last.hi = last.hi.max(range.hi),
-            _ => out.push(*range),
-        }
-    }
+/// Stretches of overlapping trust spheres, which are in order.
+fn stretches(spheres: &[Reach], out: &mut Vec<Interval>) {
+    out.clear();
+    out.extend(spheres.iter().map(|r| r.range));
+    Interval::unite(out);
 }
 
 /// Makes stretches hold the hits at their ends with their errors, and unites those that then overlap.
@@ -351,16 +341,7 @@ fn grow(stretches: &mut Vec<Interval>, hits: &[Hit]) {
             }
         }
     }
-    let mut kept = 0;
-    for i in 1..stretches.len() {
-        if stretches[i].lo <= stretches[kept].hi {
-            stretches[kept].hi = stretches[kept].hi.max(stretches[i].hi);
-        } else {
-            kept += 1;
-            stretches[kept] = stretches[i];
-        }
-    }
-    stretches.truncate(kept + 1);
+    Interval::unite(stretches);
 }
 
 /// Takes roots of overlapping patches for one, that of the patch whose middle is nearest; `false` where two that are not one

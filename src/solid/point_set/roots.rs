@@ -19,8 +19,6 @@ pub(super) struct Root {
     pub entering: bool,
     /// Whether F jumps here instead of vanishing.
     pub jump: bool,
-    /// The cell whose patch it was found with.
-    pub cell: Option<u32>,
 }
 
 /// A stretch of a line on which F is defined, with the state at both ends.
@@ -171,7 +169,6 @@ impl Search<'_> {
                 shift: fa[0].abs().min(fb[0].abs()).min(b.s - a.s),
                 entering: fb[0] < fa[0],
                 jump: true,
-                cell: None,
             });
         }
     }
@@ -253,7 +250,6 @@ impl Search<'_> {
             shift: fa.abs().min(fb.abs()).min(cell.length),
             entering: fb < fa,
             jump,
-            cell: None,
         });
     }
 
@@ -281,7 +277,7 @@ impl Search<'_> {
                 // The slope cannot fall below this between the root and here.
                 let flattest = f[1].abs() - m * (2.0 * step.abs() + floor);
                 let err = (shift / flattest.max(0.0)).min(hi.0 - lo.0);
-                return Root { s: next, err, shift, entering, jump: false, cell: None };
+                return Root { s: next, err, shift, entering, jump: false };
             }
             at = if inside {
                 next
@@ -291,7 +287,7 @@ impl Search<'_> {
         }
         self.out.failures += 1;
         let (s, err) = (0.5 * (lo.0 + hi.0), 0.5 * (hi.0 - lo.0));
-        Root { s, err, shift: lo.1.abs().max(hi.1.abs()).min(err), entering, jump: false, cell: None }
+        Root { s, err, shift: lo.1.abs().max(hi.1.abs()).min(err), entering, jump: false }
     }
 }
 

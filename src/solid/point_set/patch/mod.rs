@@ -130,8 +130,7 @@ impl Patch {
     }
 
     /// The outward unit normal over a point of the line.
-    pub fn normal(&self, line: &Ray, s: f64) -> DVec3 {
-        let local = self.local(line);
+    pub fn normal(&self, local: &Local, s: f64) -> DVec3 {
         let p = local.at + s * local.dir;
         let [_, zx, zy]: Jet = evaluate(&self.c, self.degree, p.x, p.y);
         let [e1, e2, n] = self.axes;

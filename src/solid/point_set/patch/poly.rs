@@ -6,11 +6,12 @@
 use std::sync::OnceLock;
 
 use crate::num::cholesky::Cholesky;
+use crate::num::monomials::{coefficients, exponents, index};
 
 /// The highest degree of a patch.
 pub const DEGREE: usize = 6;
 /// Its coefficients.
-pub const COEFFICIENTS: usize = 28;
+pub const COEFFICIENTS: usize = coefficients(DEGREE);
 
 /// Nodes along each side: with a value and a slope at each, four determine more than degree 6 along a line.
 const SIDE: usize = 4;
@@ -37,27 +38,8 @@ pub type Jet = [f64; 3];
 /// there would, but with the noise of a derivative.
 const SLOPES: f64 = 0.3;
 
-/// Exponents of x and y, all of a lower total degree first.
-const EXPONENTS: [[usize; 2]; COEFFICIENTS] = {
-    let mut all = [[0, 0]; COEFFICIENTS];
-    let (mut i, mut d) = (0, 0);
-    while d <= DEGREE {
-        let mut b = 0;
-        while b <= d {
-            all[i] = [d - b, b];
-            i += 1;
-            b += 1;
-        }
-        d += 1;
-    }
-    all
-};
-
-/// The place of x^a y^b.
-const fn index(a: usize, b: usize) -> usize {
-    let d = a + b;
-    d * (d + 1) / 2 + b
-}
+/// Exponents of x and y.
+const EXPONENTS: [(usize, usize); COEFFICIENTS] = exponents();
 
 /// The coefficients that fit best: a linear function of the jets at the fitted nodes, made once.
 struct Fitting {
@@ -67,7 +49,7 @@ struct Fitting {
 
 fn monomials(x: f64, y: f64) -> [Jet; COEFFICIENTS] {
     let power = |x: f64, n: usize| (0..n).fold(1.0, |p, _| p * x);
-    EXPONENTS.map(|[a, b]| {
+    EXPONENTS.map(|(a, b)| {
         let slope = |x: f64, n: usize| if n == 0 { 0.0 } else { n as f64 * power(x, n - 1) };
         [power(x, a) * power(y, b), slope(x, a) * power(y, b), power(x, a) * slope(y, b)]
     })
@@ -116,7 +98,7 @@ pub fn fit(jets: &[Jet; NODES]) -> [f64; COEFFICIENTS] {
 /// The degree of a guide.
 pub const GUIDE_DEGREE: usize = 3;
 /// Its coefficients.
-const GUIDE: usize = 10;
+const GUIDE: usize = coefficients(GUIDE_DEGREE);
 
 /// A jet somewhere.
 #[derive(Clone, Copy, Debug)]
@@ -187,14 +169,14 @@ fn horner<const D: usize>(c: &[f64; COEFFICIENTS], x: f64, y: f64) -> Jet {
 
 /// How far from zero the terms of total degrees above the given one can add up to, over the square.
 pub fn tail(c: &[f64; COEFFICIENTS], degree: usize) -> f64 {
-    c.iter().zip(EXPONENTS).filter(|(_, [a, b])| degree < a + b).map(|(c, _)| c.abs()).sum()
+    c.iter().zip(EXPONENTS).filter(|(_, (a, b))| degree < a + b).map(|(c, _)| c.abs()).sum()
 }
 
 /// Bounds over the square: of the value less its constant, of each slope, and of the second derivatives along a unit step
 /// of the square.
 pub fn bounds(c: &[f64; COEFFICIENTS]) -> ([f64; 3], f64) {
     let (mut first, mut second) = ([0.0; 3], 0.0);
-    for (c, [a, b]) in c.iter().zip(EXPONENTS).skip(1) {
+    for (c, (a, b)) in c.iter().zip(EXPONENTS).skip(1) {
         let (c, a, b) = (c.abs(), a as f64, b as f64);
         first[0] += c;
         first[1] += a * c;
