@@ -1,13 +1,14 @@
 //! Numbers, colours and strings as they are written.
 
-use super::ast::{ExprKind, Word};
+use super::ast::ExprKind;
 use super::value::MAX_NUMBER;
-use super::{syntax, units};
+use super::{scan, syntax, units};
 use crate::diag::{Diagnostic, nearest};
 use crate::source::Span;
 
 /// A number with the unit that touches it.
-pub fn number(digits: &str, unit: Option<Word>, at: Span) -> Result<ExprKind, Box<Diagnostic>> {
+pub fn number(text: &str, at: Span) -> Result<ExprKind, Box<Diagnostic>> {
+    let (digits, name) = text.split_at(scan::digits_len(text));
     let value: f64 = digits.parse().unwrap_or(f64::INFINITY);
     if !value.is_finite() {
         return Err(Diagnostic::error("E0504", format!("`{digits}` is not finite"))
@@ -18,22 +19,21 @@ pub fn number(digits: &str, unit: Option<Word>, at: Span) -> Result<ExprKind, Bo
     if value > MAX_NUMBER {
         return Err(super::value::too_large(at).into());
     }
-    let Some(word) = unit else { return Ok(ExprKind::Number(value, None)) };
-    if let Some(unit) = units::find(&word.text) {
+    if name.is_empty() {
+        return Ok(ExprKind::Number(value, None));
+    }
+    if let Some(unit) = units::find(name) {
         return Ok(ExprKind::Number(value, Some(unit)));
     }
-    let name = &word.text;
     let listed = units::names().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(" ");
     let help = match nearest(name, units::names()) {
-        _ if name == "pi" || name == "tau" || syntax::KEYWORDS.contains(&name.as_str()) => {
-            spaced(digits, name)
-        }
+        _ if name == "pi" || name == "tau" || syntax::KEYWORDS.contains(&name) => spaced(digits, name),
         Some(known) => format!("did you mean `{digits}{known}`?"),
         None if name.starts_with('_') => "digits stand together: `1000`".to_owned(),
         None => format!("the units are {listed}; for a product write `{digits} * {name}`"),
     };
     Err(Diagnostic::error("E0105", format!("`{name}` is not a unit"))
-        .at(word.at, "not a unit")
+        .at(Span { start: at.start + digits.len() as u32, ..at }, "not a unit")
         .help(help)
         .into())
 }

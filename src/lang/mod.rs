@@ -47,17 +47,7 @@ pub fn read(
 ) -> Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>> {
     let defines = defines::add(sources, defines);
     let sources = &*sources;
-    std::thread::scope(|scope| {
-        let work = move || items::read(sources, file, catalog, &defines);
-        match std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, work) {
-            Ok(thread) => thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
-            Err(error) => Err(vec![
-                Diagnostic::error("E0704", format!("no memory to read the scene: {error}"))
-                    .help("close other programs, or allow this one more memory")
-                    .fault(crate::diag::Fault::Io),
-            ]),
-        }
-    })
+    stacker::grow(STACK_BYTES, || items::read(sources, file, catalog, &defines))
 }
 
 /// What the language itself knows beside the catalogue: how it is written, and one sentence. Functions first,

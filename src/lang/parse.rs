@@ -184,6 +184,10 @@ impl Build {
     }
 
     fn operation(&self, pair: Pair<Rule>) -> Parsed<Expr> {
+        let mut alone = pair.clone().into_inner();
+        if let (Some(term), None) = (alone.next(), alone.next()) {
+            return self.term(term);
+        }
         let signs = pair.clone().into_inner().filter_map(|p| Some((infix(p.as_rule())?, self.place(&p))));
         let source = chains::Source { text: pair.as_str(), at: self.place(&pair) };
         chains::refuse_mixed(&signs.collect::<Vec<_>>(), &source)?;
@@ -232,11 +236,7 @@ impl Build {
         let at = self.place(&pair);
         let text = pair.as_str();
         let kind = match pair.as_rule() {
-            Rule::number => {
-                let mut parts = pair.into_inner();
-                let digits = parts.next().map_or("", |p| p.as_str());
-                literals::number(digits, parts.next().map(|p| self.word(&p)), at)?
-            }
+            Rule::number => literals::number(text, at)?,
             Rule::color => ExprKind::Color(literals::color(text, at)?),
             Rule::string => ExprKind::Text(literals::text(text, at)?),
             Rule::true_kw => ExprKind::Bool(true),

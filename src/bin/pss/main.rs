@@ -29,14 +29,15 @@ fn main() -> ExitCode {
     let console = Console::new(format);
     console::keep_panics_quiet();
     let done = std::panic::catch_unwind(|| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.map_err(|e| Failure::internal(format!("cannot start {threads} threads: {e}")))?;
-        pool.install(|| match &args.command {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+        pool.map_err(|e| Failure::internal(format!("cannot start {threads} threads: {e}")))?;
+        // What is not parallel stays on this thread: memory that others take grows by many small calls to the system.
+        match &args.command {
             Command::Render(args) => render::run(args, &console).map(|()| 0),
             Command::Probe(args) => probe::run(args, &console).map(|()| 0),
             Command::Check(args) => Ok(check::run(args, &console)),
             Command::Cloud(command) => cloud::run(command, &console).map(|()| 0),
-        })
+        }
     });
     let done = done.unwrap_or_else(|_| Err(Failure::internal("the program went wrong".to_owned())));
     match done {
