@@ -107,3 +107,17 @@ fn a_scene_reads_nothing_outside_its_folder() {
     let ran = folder.run(&["render", "sub/a.pss", "-o", "a.png", "--size", "8x8", "--allow-read", "."]);
     assert_eq!(ran.code, 0, "{}", ran.stderr);
 }
+
+/// The stack that reads the deepest scene is 256 MiB, of which only what is used is touched.
+#[cfg(target_os = "linux")]
+#[test]
+fn where_there_is_no_memory_to_read_a_scene_that_is_said() {
+    let folder = Folder::new();
+    folder.write("a.pss", "draw sphere(r: 1)");
+    let args = ["render", "a.pss", "-o", "a.png", "--size", "8x8", "--threads", "1"];
+    let ran = folder.run_within(256 << 20, &args);
+    assert_eq!(ran.code, 74, "{}", ran.stderr);
+    assert!(ran.stderr.starts_with("error[E0704]"), "{}", ran.stderr);
+    assert_eq!(folder.files(), ["a.pss"]);
+    assert_eq!(folder.run_within(1 << 30, &args).code, 0);
+}

@@ -28,6 +28,7 @@ mod units;
 mod value;
 
 use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
 use crate::diag::Diagnostic;
 use crate::scene::{Catalog, Scene};
@@ -47,7 +48,23 @@ pub fn read(
 ) -> Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>> {
     let defines = defines::add(sources, defines);
     let sources = &*sources;
-    stacker::grow(STACK_BYTES, || items::read(sources, file, catalog, &defines))
+    // Where the stack cannot be had `grow` panics before it calls.
+    let mut begun = false;
+    let read = AssertUnwindSafe(|| {
+        stacker::grow(STACK_BYTES, || {
+            begun = true;
+            items::read(sources, file, catalog, &defines)
+        })
+    });
+    match catch_unwind(read) {
+        Ok(read) => read,
+        Err(panic) if begun => resume_unwind(panic),
+        Err(_) => Err(vec![
+            Diagnostic::error("E0704", "no memory to read the scene")
+                .help("close other programs, or allow this one more memory")
+                .fault(crate::diag::Fault::Io),
+        ]),
+    }
 }
 
 /// What the language itself knows beside the catalogue: how it is written, and one sentence. Functions first,

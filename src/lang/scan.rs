@@ -141,11 +141,11 @@ fn text_token(rest: &str) -> (Option<TokenKind>, usize) {
 
 /// Digits, a fraction, an exponent and the letters that touch them.
 fn number_len(rest: &str) -> usize {
-    run(rest.as_bytes(), digits_len(rest), |b| b.is_ascii_alphanumeric() || *b == b'_')
+    past(rest.as_bytes(), digits_len(rest), |b| b.is_ascii_alphanumeric() || *b == b'_')
 }
 
 /// Where the first byte stands, from `i` on, that is not accepted.
-fn run(bytes: &[u8], mut i: usize, accept: fn(&u8) -> bool) -> usize {
+fn past(bytes: &[u8], mut i: usize, accept: fn(&u8) -> bool) -> usize {
     while bytes.get(i).is_some_and(accept) {
         i += 1;
     }
@@ -156,14 +156,14 @@ fn run(bytes: &[u8], mut i: usize, accept: fn(&u8) -> bool) -> usize {
 pub fn digits_len(rest: &str) -> usize {
     let bytes = rest.as_bytes();
     let is_digit: fn(&u8) -> bool = u8::is_ascii_digit;
-    let mut end = run(bytes, 0, is_digit);
+    let mut end = past(bytes, 0, is_digit);
     if bytes.get(end) == Some(&b'.') && bytes.get(end + 1).is_some_and(is_digit) {
-        end = run(bytes, end + 1, is_digit);
+        end = past(bytes, end + 1, is_digit);
     }
     if bytes.get(end).is_some_and(|b| b.eq_ignore_ascii_case(&b'e')) {
         let sign = usize::from(bytes.get(end + 1).is_some_and(|b| b"+-".contains(b)));
         if bytes.get(end + 1 + sign).is_some_and(is_digit) {
-            end = run(bytes, end + 1 + sign, is_digit);
+            end = past(bytes, end + 1 + sign, is_digit);
         }
     }
     end

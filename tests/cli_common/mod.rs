@@ -37,6 +37,15 @@ impl Folder {
         names
     }
 
+    /// The same with at most so many bytes of address space.
+    #[cfg(target_os = "linux")]
+    pub fn run_within(&self, bytes: u64, args: &[&str]) -> Ran {
+        let limited = format!("ulimit -v {} && exec \"$0\" \"$@\"", bytes >> 10);
+        let program = ["-c", &limited, env!("CARGO_BIN_EXE_pss")];
+        let output = Command::new("sh").args(program).args(args).current_dir(self.path()).output();
+        Ran::of(output.unwrap())
+    }
+
     pub fn run(&self, args: &[&str]) -> Ran {
         let output = Command::new(env!("CARGO_BIN_EXE_pss")).args(args).current_dir(self.path()).output();
         Ran::of(output.unwrap())
