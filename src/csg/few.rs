@@ -2,6 +2,9 @@
 //! sight and for the whole line, and truth is read from a table. It answers only where all that lies near the face it finds
 //! crosses at one and the same t, so that the clean-up has no say; all other rays go the long way
 //! ([`super::sweep`]), with the same answers.
+//!
+//! Its functions are inlined by force: each has two or three callers, which the compiler takes for too many, and a picture of
+//! closed forms takes a twentieth fewer instructions so.
 
 use super::bundle::Bundle;
 use super::object::{Core, Scratch};
@@ -54,7 +57,7 @@ enum Truths {
 
 impl<'a> Look<'a> {
     /// `None` where the ray meets other leaves than closed forms at once.
-    #[inline]
+    #[inline(always)]
     pub fn new(
         core: &'a Core,
         ray: &'a Ray,
@@ -92,7 +95,7 @@ impl<'a> Look<'a> {
     }
 
     /// The first boundary in the range, and whether the ray goes in there; `None` where the long way has to tell.
-    #[inline]
+    #[inline(always)]
     pub fn first(mut self) -> Option<Option<(Boundary, bool)>> {
         loop {
             let found = match self.begin() {
@@ -115,7 +118,7 @@ impl<'a> Look<'a> {
     }
 
     /// Whether any part of the range is inside; `None` where the long way has to tell.
-    #[inline]
+    #[inline(always)]
     pub fn any(mut self) -> Option<bool> {
         loop {
             let found = match self.begin() {
@@ -137,7 +140,7 @@ impl<'a> Look<'a> {
     }
 
     /// Lets the hierarchy show leaves until one more has been asked; false where that is one too many or no closed form.
-    #[inline]
+    #[inline(always)]
     fn meet_more(&mut self) -> bool {
         let count = self.room.few.count;
         while self.room.few.count == count && self.known < f64::INFINITY {
@@ -151,7 +154,7 @@ impl<'a> Look<'a> {
     }
 
     /// Asks the leaves in sight.
-    #[inline]
+    #[inline(always)]
     fn take_shown(&mut self) -> bool {
         while let Some(leaf) = self.room.few.shown.pop() {
             if self.core.costs[leaf as usize] != Cost::Closed || !self.take(leaf, false) {
@@ -171,23 +174,20 @@ impl<'a> Look<'a> {
 
     /// Asks a leaf and puts its crossings in order; false where there is no room. One that the line passes by needs none,
     /// unless it has a place of its own.
-    #[inline]
+    #[inline(always)]
     fn take(&mut self, leaf: u32, has_place: bool) -> bool {
-        let few = &mut self.room.few;
         let own = &self.core.tree.leaves()[leaf as usize];
-        let first = few.crossings.len();
         let mut moved = None;
         let local = own.place.local_ray(self.ray, &mut moved);
-        let answer = own.crossings(local, Interval::ALL, self.scratch, &mut few.crossings);
-        debug_assert_eq!(answer.range, Interval::ALL, "closed forms answer for the whole line");
-        if few.crossings.len() == first && !answer.inside && !has_place {
-            return true;
+        match own.chord(local, self.scratch) {
+            Some(chord) if chord.is_none() && !has_place => true,
+            Some(chord) => self.room.few.keep(leaf, &chord),
+            None => false,
         }
-        few.keep(leaf, answer.inside, first)
     }
 
     /// Whether it is inside where these leaves are.
-    #[inline]
+    #[inline(always)]
     fn inside(&mut self, mask: u64) -> bool {
         if mask == 0 {
             return self.core.outside.root() == Truth::Yes;
@@ -225,7 +225,7 @@ impl<'a> Look<'a> {
 
     /// The leaves that the ray is inside of where its range begins, and how many crossings come before; `None` where others
     /// may begin before.
-    #[inline]
+    #[inline(always)]
     fn begin(&self) -> Option<(u64, usize)> {
         if self.known <= self.range.lo {
             return None;
@@ -239,7 +239,7 @@ impl<'a> Look<'a> {
     }
 
     /// The next change of truth in the range, from a crossing and the leaves before it on.
-    #[inline]
+    #[inline(always)]
     fn change(&mut self, mut mask: u64, mut from: usize) -> Found<Option<Turn>> {
         let end = self.known.min(self.range.hi.next_up());
         let hits = self.room.few.hits();
@@ -273,7 +273,7 @@ impl<'a> Look<'a> {
     }
 
     /// The crossing that stands for a change.
-    #[inline]
+    #[inline(always)]
     fn met(&self, turn: &Turn) -> usize {
         if turn.from + 1 == turn.to {
             return turn.from;
@@ -286,10 +286,10 @@ impl<'a> Look<'a> {
     }
 
     /// The outward unit normal of the leaf of a crossing, world frame.
-    #[inline]
+    #[inline(always)]
     fn normal(&mut self, hit: usize) -> DVec3 {
         let hit = self.room.few.hits()[hit];
-        let (slot, crossing) = (hit.slot, *self.room.few.crossing(&hit));
+        let (slot, crossing) = (hit.slot, hit.crossing());
         let leaf = &self.core.tree.leaves()[self.room.few.leaves[slot as usize] as usize];
         let mut moved = None;
         leaf.normal(leaf.place.local_ray(self.ray, &mut moved), &crossing, self.scratch)
@@ -297,7 +297,7 @@ impl<'a> Look<'a> {
 
     /// Whether nothing but what crosses at a change lies so near that the clean-up or the choice of an owner would look at it,
     /// or at what fills the point just inside: the normal of what stands for the change.
-    #[inline]
+    #[inline(always)]
     fn alone(&mut self, turn: &Turn) -> Found<(usize, DVec3)> {
         let met = self.met(turn);
         let normal = self.normal(met);
@@ -308,24 +308,25 @@ impl<'a> Look<'a> {
         let length = |v: DVec3| v.abs().element_sum();
         let (scale, point) = (core.bound.scale.max(length(self.ray.origin)), length(self.ray.at(t)));
         let reach = 2.0 * core.bound.shift + tolerance::cleanup(scale) + tolerance::cleanup(point);
-        let window = 2.0 * reach / slope;
-        let before = turn.from == 0 || hits[turn.from - 1].t < t - window;
-        let behind = hits.get(turn.to).is_none_or(|next| t + window < next.t);
-        if !before || !behind || !window.is_finite() {
+        // Of lengths along the normal: a product sooner than a quotient by a slope, which may be none.
+        let is_far = |lo: f64, hi: f64| 2.0 * reach < (hi - lo) * slope;
+        let before = turn.from == 0 || is_far(hits[turn.from - 1].t, t);
+        let behind = hits.get(turn.to).is_none_or(|next| is_far(t, next.t));
+        if !before || !behind || !is_far(t, f64::INFINITY) {
             return Found::Unclear;
         }
-        if self.known <= t + window { Found::More } else { Found::Answer((met, normal)) }
+        if is_far(t, self.known) { Found::Answer((met, normal)) } else { Found::More }
     }
 
     /// The boundary at a change that is alone.
-    #[inline]
+    #[inline(always)]
     fn boundary(&mut self, turn: &Turn, met: usize, normal: DVec3) -> Boundary {
         let tied = 1 < turn.to - turn.from;
         self.scratch.counts.ties += u64::from(tied);
         let owner = if tied { self.room.owner(self.core, turn) } else { met };
         let normal = if owner == met { normal } else { self.normal(owner) };
         let (core, hit) = (self.core, self.room.few.hits()[owner]);
-        let (slot, crossing) = (hit.slot, *self.room.few.crossing(&hit));
+        let (slot, crossing) = (hit.slot, hit.crossing());
         let leaf = self.room.few.leaves[slot as usize];
         let within = if turn.entering { turn.after } else { turn.before };
         let filler = match core.tree.leaves()[leaf as usize].material {

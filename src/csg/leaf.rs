@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::group::Group;
 use super::object::Object;
 use crate::geom::{Aabb, Interval, Lean, Placement, Ray, tolerance};
-use crate::solid::{Answer, Crossing, Scratch, Solid};
+use crate::solid::{Answer, Chord, Crossing, Scratch, Solid};
 
 /// A solid, placed, as an operand.
 #[derive(Clone, Debug)]
@@ -91,6 +91,19 @@ impl Leaf {
         scratch.counts.bad_leaves += 1;
         out.truncate(first);
         Answer::whole_line(false)
+    }
+
+    /// The part of the line of a ray given in the leaf's frame that is inside, where the leaf knows it in closed form
+    /// ([`Solid::chord`]); counts as [`Leaf::crossings`] does, and tells the same.
+    #[inline]
+    pub(super) fn chord(&self, local: &Ray, scratch: &mut Scratch) -> Option<Chord> {
+        let chord = self.solid.chord(local, self.lean(scratch))?;
+        scratch.counts.leaf_queries += 1;
+        if chord.is_sound() {
+            return Some(chord);
+        }
+        scratch.counts.bad_leaves += 1;
+        Some(Chord::NONE)
     }
 
     /// How rays lean in its frame.

@@ -6,7 +6,7 @@ use super::room::Room;
 use super::tree::Tree;
 use super::truth::{State, Truth};
 use crate::geom::Aabb;
-use crate::solid::{Cost, Crossing};
+use crate::solid::{Chord, Cost, Crossing};
 
 /// Of more leaves than this a first surface makes most needless, which the long way finds out.
 const FEW: usize = 16;
@@ -90,10 +90,20 @@ const MIX: u64 = 0x9e37_79b9_7f4a_7c15;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hit {
     pub t: f64,
+    /// [`Crossing::part`].
+    part: u32,
     /// Of the leaves met, which.
-    pub slot: u32,
-    /// Its place in [`Few::crossings`].
-    pub crossing: u32,
+    pub slot: u8,
+    /// Whether the ray goes into that leaf.
+    pub entering: bool,
+}
+
+impl Hit {
+    /// As the leaf would tell it.
+    #[inline]
+    pub fn crossing(&self) -> Crossing {
+        Crossing::exact(self.t, self.entering, self.part)
+    }
 }
 
 /// Where truth changes: at crossings that all have one t.
@@ -120,8 +130,6 @@ pub(super) struct Few {
     pub shown: Vec<u32>,
     /// Bit i: whether the line comes from inside the leaf in slot i.
     pub inside: u64,
-    /// What the leaves have answered, in the order in which they were asked.
-    pub crossings: Vec<Crossing>,
     /// Ascending.
     hits: [Hit; MOST],
     pub hit_count: usize,
@@ -137,8 +145,7 @@ impl Default for Few {
             hash: 0,
             shown: Vec::new(),
             inside: 0,
-            crossings: Vec::new(),
-            hits: [Hit { t: 0.0, slot: 0, crossing: 0 }; MOST],
+            hits: [Hit { t: 0.0, part: 0, slot: 0, entering: false }; MOST],
             hit_count: 0,
             tables: Vec::new(),
         }
@@ -174,7 +181,7 @@ impl Room {
         let leaf = |hit: usize| self.few.leaves[self.few.hits[hit].slot as usize];
         let makes = |hit: usize| self.here.differs(&self.before, &core.tree, leaf(hit) as usize);
         let fits = |hit: usize| {
-            let entering = self.few.crossing(&self.few.hits[hit]).entering;
+            let entering = self.few.hits[hit].entering;
             core.tree.negated[leaf(hit) as usize].is_none_or(|not| (entering != not) == turn.entering)
         };
         let key = |hit: &usize| (leaves[leaf(*hit) as usize].key(), leaf(*hit));
@@ -224,7 +231,6 @@ impl Few {
         (self.leaves, self.count, self.hash) = ([NO_LEAF; FEW], 0, tree.wrapping_mul(MIX));
         (self.inside, self.hit_count) = (0, 0);
         self.shown.clear();
-        self.crossings.clear();
     }
 
     /// Makes a state that in which the leaves in these slots are inside.
@@ -240,33 +246,36 @@ impl Few {
         &self.hits[..self.hit_count]
     }
 
+    /// Keeps a leaf with the ends of its chord; false where there is no room for it.
     #[inline]
-    pub fn crossing(&self, hit: &Hit) -> &Crossing {
-        &self.crossings[hit.crossing as usize]
-    }
-
-    /// Keeps a leaf with its crossings, those from a place on; false where there is no room for it, or more crossings than closed forms
-    /// have.
-    #[inline]
-    pub fn keep(&mut self, leaf: u32, inside: bool, first: usize) -> bool {
+    pub fn keep(&mut self, leaf: u32, chord: &Chord) -> bool {
         let slot = self.count;
-        if slot == FEW || first + 2 < self.crossings.len() {
+        if slot == FEW {
             return false;
         }
         self.leaves[slot] = leaf;
         self.hash = (self.hash ^ u64::from(leaf)).wrapping_mul(MIX);
         self.count += 1;
-        self.inside |= u64::from(inside) << slot;
-        for crossing in first..self.crossings.len() {
-            let t = self.crossings[crossing].t;
-            let mut at = self.hit_count;
-            while 0 < at && t < self.hits[at - 1].t {
-                self.hits[at] = self.hits[at - 1];
-                at -= 1;
+        self.inside |= u64::from(chord.begins_inside()) << slot;
+        for (end, entering) in [(0, true), (1, false)] {
+            let (t, part) = (chord.ends[end], chord.parts[end]);
+            // So is an end of a chord that is none.
+            if t.is_finite() {
+                self.insert(Hit { t, part, slot: slot as u8, entering });
             }
-            self.hits[at] = Hit { t, slot: slot as u32, crossing: crossing as u32 };
-            self.hit_count += 1;
         }
         true
+    }
+
+    /// Behind those at the same t.
+    #[inline]
+    fn insert(&mut self, hit: Hit) {
+        let mut at = self.hit_count;
+        while 0 < at && hit.t < self.hits[at - 1].t {
+            self.hits[at] = self.hits[at - 1];
+            at -= 1;
+        }
+        self.hits[at] = hit;
+        self.hit_count += 1;
     }
 }

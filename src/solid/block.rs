@@ -6,9 +6,9 @@ use glam::DVec3;
 
 use super::rounded_box::RoundedBox;
 use super::table::{Build, Primitive};
-use super::{Answer, Cost, Crossing, Scratch, Solid};
+use super::{Chord, Cost, Crossing, Scratch, Solid};
 use crate::geom::lean::is_between;
-use crate::geom::{Aabb, Interval, Ray};
+use crate::geom::{Aabb, Lean, Ray};
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param, Value};
 
 /// The line of the table.
@@ -87,14 +87,14 @@ impl Solid for Block {
         self.0
     }
 
-    fn crossings(&self, ray: &Ray, _: Interval, scratch: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
+    fn chord(&self, ray: &Ray, lean: Lean) -> Option<Chord> {
         let (mut enter, mut exit) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
         for axis in 0..3 {
             let (o, d) = (ray.origin[axis], ray.dir[axis]);
             let (lo, hi) = (self.0.min[axis], self.0.max[axis]);
             if d == 0.0 {
-                if !is_between(o, lo, hi, scratch.lean.along(axis)) {
-                    return Answer::whole_line(false);
+                if !is_between(o, lo, hi, lean.along(axis)) {
+                    return Some(Chord::NONE);
                 }
                 continue;
             }
@@ -108,11 +108,7 @@ impl Solid for Block {
                 exit = (t1, part ^ 1);
             }
         }
-        if enter.0 < exit.0 {
-            out.push(Crossing::exact(enter.0, true, enter.1));
-            out.push(Crossing::exact(exit.0, false, exit.1));
-        }
-        Answer::whole_line(false)
+        Some(Chord::between(enter, exit))
     }
 
     fn moved(&self, by: f64) -> Result<Option<Arc<dyn Solid>>, &'static str> {

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec2, DVec3};
 
-use super::shaft::{Shaft, push_within};
+use super::shaft::{Shaft, within};
 use super::table::{Build, Primitive};
-use super::{Answer, Cost, Crossing, Scratch, Solid};
-use crate::geom::{Aabb, Interval, Ray};
+use super::{Chord, Cost, Crossing, Scratch, Solid};
+use crate::geom::{Aabb, Lean, Ray};
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};
 
 /// The line of the table.
@@ -116,22 +116,19 @@ impl Solid for Cone {
     }
 
     /// The slab between the ends and the infinite cone, about the point nearest to the middle of the axis.
-    fn crossings(&self, ray: &Ray, _: Interval, scratch: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
-        let miss = Answer::whole_line(false);
+    fn chord(&self, ray: &Ray, lean: Lean) -> Option<Chord> {
         let Shaft { from, across_along, height, .. } = self.shaft;
         if height <= 0.0 || self.radii[0].max(self.radii[1]) <= 0.0 {
-            return miss;
+            return Some(Chord::NONE);
         }
         let (shift, o) = ray.nearest_to(self.middle);
         // Heights are taken from the ray's own origin: they decide flush faces, and are exact along the axes.
         let z = self.shaft.axis().dot(ray.origin - from);
         let (o, d) = (across_along * o, across_along * ray.dir);
-        let Some(ends) = self.shaft.between(z, d.z, scratch.lean) else { return miss };
+        let Some(ends) = self.shaft.between(z, d.z, lean) else { return Some(Chord::NONE) };
         let w = 0.5 * (self.radii[0] + self.radii[1]) + self.slope * o.z;
-        if let Some([lo, hi]) = self.nappe(o.truncate(), d.truncate(), w, self.slope * d.z) {
-            push_within(ends, [shift + lo, shift + hi], out);
-        }
-        miss
+        let walls = self.nappe(o.truncate(), d.truncate(), w, self.slope * d.z);
+        Some(walls.map_or(Chord::NONE, |walls| within(ends, walls.map(|t| shift + t))))
     }
 
     /// Inward each face moves by as much, and what is left is a frustum again, or a full cone where the walls meet

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec2, DVec3};
 
-use super::shaft::{Shaft, push_within};
+use super::shaft::{Shaft, within};
 use super::table::{Build, Primitive};
-use super::{Answer, Cost, Crossing, Scratch, Solid};
-use crate::geom::{Aabb, Interval, Ray};
+use super::{Chord, Cost, Crossing, Scratch, Solid};
+use crate::geom::{Aabb, Lean, Ray};
 use crate::num::roots;
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};
 
@@ -78,18 +78,15 @@ impl Solid for Cylinder {
     }
 
     /// The slab between the caps and the infinite cylinder. A ray along the axis meets the caps alone.
-    fn crossings(&self, ray: &Ray, _: Interval, scratch: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
-        let miss = Answer::whole_line(false);
+    fn chord(&self, ray: &Ray, lean: Lean) -> Option<Chord> {
         let Shaft { from, across_along, height, .. } = self.shaft;
         if self.radius <= 0.0 || height <= 0.0 {
-            return miss;
+            return Some(Chord::NONE);
         }
         let (o, d) = (across_along * (ray.origin - from), across_along * ray.dir);
-        let Some(ends) = self.shaft.between(o.z, d.z, scratch.lean) else { return miss };
-        if let Some(walls) = self.within(o.truncate(), d.truncate()) {
-            push_within(ends, walls, out);
-        }
-        miss
+        let Some(ends) = self.shaft.between(o.z, d.z, lean) else { return Some(Chord::NONE) };
+        let walls = self.within(o.truncate(), d.truncate());
+        Some(walls.map_or(Chord::NONE, |walls| within(ends, walls)))
     }
 
     fn moved(&self, by: f64) -> Result<Option<Arc<dyn Solid>>, &'static str> {

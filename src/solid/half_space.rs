@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::table::{Build, Primitive};
-use super::{Answer, Cost, Crossing, Scratch, Solid};
-use crate::geom::{Aabb, Interval, Ray};
+use super::{Chord, Cost, Crossing, Scratch, Solid};
+use crate::geom::{Aabb, Lean, Ray};
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param, Value};
 
 /// The line of the table.
@@ -60,14 +60,18 @@ impl Solid for HalfSpace {
         Aabb::ALL
     }
 
-    fn crossings(&self, ray: &Ray, _: Interval, scratch: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
+    fn chord(&self, ray: &Ray, lean: Lean) -> Option<Chord> {
         let (height, slope) = (self.offset - self.normal.dot(ray.origin), self.normal.dot(ray.dir));
-        if slope == 0.0 {
-            let leans_in = || height == 0.0 && scratch.lean.dot(self.normal) < 0.0;
-            return Answer::whole_line(0.0 < height || leans_in());
-        }
-        out.push(Crossing::exact(height / slope, slope < 0.0, 0));
-        Answer::whole_line(0.0 < slope)
+        let all = [f64::NEG_INFINITY, f64::INFINITY];
+        let ends = if slope == 0.0 {
+            let leans_in = || height == 0.0 && lean.dot(self.normal) < 0.0;
+            if 0.0 < height || leans_in() { all } else { Chord::NONE.ends }
+        } else if slope < 0.0 {
+            [height / slope, all[1]]
+        } else {
+            [all[0], height / slope]
+        };
+        Some(Chord { ends, parts: [0; 2] })
     }
 
     fn moved(&self, by: f64) -> Result<Option<Arc<dyn Solid>>, &'static str> {

@@ -3,6 +3,7 @@
 
 pub mod block;
 pub mod capsule;
+mod chord;
 pub mod cone;
 mod crossing;
 pub mod cylinder;
@@ -32,6 +33,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
+pub use chord::Chord;
 pub use crossing::{Answer, Crossing};
 
 use crate::geom::{Aabb, Interval, Lean, Ray};
@@ -82,8 +84,16 @@ pub trait Solid: Send + Sync + Debug {
     /// beyond it; what is reported never depends on the range asked.
     ///
     /// A crossing at the very low end of the range is before the range, one at the high end inside it.
-    fn crossings(&self, ray: &Ray, range: Interval, scratch: &mut Scratch, out: &mut Vec<Crossing>)
-    -> Answer;
+    ///
+    /// A solid has this or [`Solid::chord`], which is then asked.
+    fn crossings(&self, ray: &Ray, _: Interval, scratch: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
+        self.chord(ray, scratch.lean).unwrap_or(Chord::NONE).answer(out)
+    }
+
+    /// The part of the ray's line that is inside, of a convex solid of one closed form ([`Cost::Closed`]); `None` of others.
+    fn chord(&self, _ray: &Ray, _lean: Lean) -> Option<Chord> {
+        None
+    }
 
     /// The outward unit normal at a crossing that [`Solid::crossings`] gave for this ray.
     fn normal(&self, ray: &Ray, crossing: &Crossing, scratch: &mut Scratch) -> DVec3;

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::Crossing;
+use super::Chord;
 use crate::geom::lean::is_between;
 use crate::geom::{Aabb, Lean};
 use crate::scene::Call;
@@ -101,15 +101,12 @@ impl Shaft {
 
 /// Appends the span between the ends that lies within the walls.
 #[inline]
-pub fn push_within([mut enter, mut exit]: [End; 2], [lo, hi]: [f64; 2], out: &mut Vec<Crossing>) {
+pub fn within([mut enter, mut exit]: [End; 2], [lo, hi]: [f64; 2]) -> Chord {
     if enter.0 < lo {
         enter = (lo, part::WALL);
     }
     if hi < exit.0 {
         exit = (hi, part::WALL);
     }
-    if enter.0 < exit.0 {
-        out.push(Crossing::exact(enter.0, true, enter.1));
-        out.push(Crossing::exact(exit.0, false, exit.1));
-    }
+    Chord::between(enter, exit)
 }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 
 use super::table::{Build, Primitive};
-use super::{Answer, Cost, Crossing, Scratch, Solid};
-use crate::geom::{Aabb, Interval, Ray};
+use super::{Chord, Cost, Crossing, Scratch, Solid};
+use crate::geom::{Aabb, Lean, Ray};
 use crate::num::roots;
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param, Value};
 
@@ -58,9 +58,9 @@ impl Solid for Sphere {
 
     /// |o + t d|^2 = r^2, for an ellipsoid in units of its radii. The discriminant is taken at the point nearest to the
     /// centre, which keeps its digits however far the origin lies.
-    fn crossings(&self, ray: &Ray, _: Interval, _: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
+    fn chord(&self, ray: &Ray, _: Lean) -> Option<Chord> {
         if self.radii.min_element() <= 0.0 {
-            return Answer::whole_line(false);
+            return Some(Chord::NONE);
         }
         let (mut o, mut d, mut r) = (ray.origin - self.center, ray.dir, self.radii.x);
         if self.radii != DVec3::splat(r) {
@@ -71,13 +71,10 @@ impl Solid for Sphere {
         let foot = o - (b / a) * d;
         let discriminant = -a * squares_apart(foot.length_squared(), r);
         if discriminant.is_nan() || discriminant <= 0.0 {
-            return Answer::whole_line(false);
+            return Some(Chord::NONE);
         }
-        if let Some([t0, t1]) = roots::quadratic(a, b, squares_apart(o.length_squared(), r), discriminant) {
-            out.push(Crossing::exact(t0, true, 0));
-            out.push(Crossing::exact(t1, false, 0));
-        }
-        Answer::whole_line(false)
+        let ends = roots::quadratic(a, b, squares_apart(o.length_squared(), r), discriminant);
+        Some(ends.map_or(Chord::NONE, |ends| Chord { ends, parts: [0; 2] }))
     }
 
     fn moved(&self, by: f64) -> Result<Option<Arc<dyn Solid>>, &'static str> {

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{DVec3, dvec3};
 use pss::csg::Leaf;
-use pss::geom::{Aabb, Interval, Placement, Ray};
-use pss::solid::{Answer, Cost, Crossing, Scratch, Solid};
+use pss::geom::{Aabb, Interval, Lean, Placement, Ray};
+use pss::solid::{Answer, Chord, Cost, Crossing, Scratch, Solid};
 
 use super::draws::Draws;
 
@@ -73,6 +73,23 @@ impl Solid for Line {
             }
         }
         Answer { inside, range: answered }
+    }
+
+    /// Where it is one interval.
+    fn chord(&self, _: &Ray, _: Lean) -> Option<Chord> {
+        let plain = !self.costly && self.piece.is_none() && self.shift == 0.0;
+        let (ends, parts) = match (self.inside, &self.ends[..]) {
+            (false, []) => (Chord::NONE.ends, [0; 2]),
+            (false, &[lo]) => ([lo, f64::INFINITY], [0; 2]),
+            (false, &[lo, hi]) => ([lo, hi], [0, 1]),
+            (true, []) => ([f64::NEG_INFINITY, f64::INFINITY], [0; 2]),
+            (true, &[hi]) => ([f64::NEG_INFINITY, hi], [0; 2]),
+            _ => return None,
+        };
+        plain.then(|| {
+            self.asked.fetch_add(1, Ordering::Relaxed);
+            Chord { ends, parts }
+        })
     }
 
     fn normal(&self, _: &Ray, crossing: &Crossing, _: &mut Scratch) -> DVec3 {
