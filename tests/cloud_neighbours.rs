@@ -15,14 +15,18 @@ fn brute(points: &[DVec3], x: DVec3) -> Vec<Near> {
     all
 }
 
-/// Random points, a lattice (many equal distances), copies of few points, points on a line, one, none.
+/// Random points, denser by a million in the middle of them, a lattice (many equal distances), copies of few points, points on a
+/// line, one, none.
 fn clouds() -> Vec<Vec<DVec3>> {
     let lattice =
         (0..1000).map(|i| DVec3::new(f64::from(i % 10), f64::from(i / 10 % 10), f64::from(i / 100)));
     let copies = (0..500).map(|i| DVec3::splat(f64::from(i % 3)));
     let line = (0..300).map(|i| DVec3::new(0.0, f64::from(i) * 0.1, 0.0));
+    let mut stream = Stream::new(2);
+    let uneven = (0..1500).map(|_| stream.direction() * 10f64.powf(-6.0 * stream.unit())).collect();
     vec![
         random_sphere(2000, 1),
+        uneven,
         lattice.collect(),
         copies.collect(),
         line.collect(),

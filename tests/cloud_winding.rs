@@ -6,13 +6,14 @@ use cloud_common::{fibonacci_sphere, random_torus};
 use glam::DVec3;
 use pss::cloud::neighbours::Neighbours;
 use pss::cloud::winding::Winding;
-use pss::cloud::{AREA_NEIGHBOURS, areas, spacing};
+use pss::cloud::{areas, spacing};
 use pss::num::hash::Stream;
 
 fn oriented(points: &[DVec3], normals: &[DVec3], opening: f64) -> Winding {
-    let table = Neighbours::new(points).table(AREA_NEIGHBOURS);
+    let tree = Neighbours::new(points);
+    let table = tree.table(spacing::SPACING_NEIGHBOURS);
     let widths = spacing::widths(&spacing::spacing(points, &table), &table);
-    Winding::new(points, normals, &areas(points, normals, &widths, &table), opening)
+    Winding::new(points, normals, &areas(points, normals, &widths, &tree), opening)
 }
 
 #[test]

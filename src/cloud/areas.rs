@@ -3,11 +3,11 @@
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use super::neighbours::Table;
+use super::neighbours::{Neighbours, Table};
 
 /// Neighbours that can bound a cell: in a random sampling a Voronoi cell has six, and more than 16 in one of
 /// a million.
-pub const AREA_NEIGHBOURS: usize = 16;
+const AREA_NEIGHBOURS: usize = 16;
 
 /// The disc that bounds a cell, in widths of its sample. On a ball of 20,000 quasi-random samples with a cap missing,
 /// half a width cuts a quarter of the area off, three quarters leave it right to 0.4 % and one width adds 0.7 %.
@@ -24,9 +24,20 @@ const MOST: usize = CORNERS + AREA_NEIGHBOURS + 1;
 ///
 /// Cells of samples inside the surface fill it without gap. At a rim a cell ends at the disc: half a width is
 /// 1.25 spacings in a random sampling, which cuts 1 % off the cells there and adds less than a spacing
-/// beyond a rim. Normals need no sign.
-pub fn areas(points: &[DVec3], normals: &[DVec3], widths: &[f64], table: &Table) -> Vec<f64> {
-    let area = |i: usize| cell(points, normals[i], 0.5 * widths[i], i, table.row(i));
+/// beyond a rim. Normals need no sign. `tree` is that of the points.
+pub fn areas(points: &[DVec3], normals: &[DVec3], widths: &[f64], tree: &Neighbours) -> Vec<f64> {
+    let unit = Polygon::disc(1.0);
+    tree.map(AREA_NEIGHBOURS, |i, near| {
+        let (i, near) = (i as usize, near.iter().map(|n| n.index));
+        cell(points, normals[i], &unit, 0.5 * widths[i], i, near)
+    })
+}
+
+/// The same by a table of neighbours, of which the first sixteen count.
+pub fn areas_by(points: &[DVec3], normals: &[DVec3], widths: &[f64], table: &Table) -> Vec<f64> {
+    let unit = Polygon::disc(1.0);
+    let near = |i: usize| table.row(i).iter().copied().take(AREA_NEIGHBOURS);
+    let area = |i: usize| cell(points, normals[i], &unit, 0.5 * widths[i], i, near(i));
     (0..points.len()).into_par_iter().map(area).collect()
 }
 
@@ -38,10 +49,17 @@ pub fn tangents(n: DVec3) -> (DVec3, DVec3) {
     (DVec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), DVec3::new(b, sign + n.y * n.y * a, -n.y))
 }
 
-fn cell(points: &[DVec3], normal: DVec3, reach: f64, i: usize, row: &[u32]) -> f64 {
+fn cell(
+    points: &[DVec3],
+    normal: DVec3,
+    unit: &Polygon,
+    reach: f64,
+    i: usize,
+    near: impl Iterator<Item = u32>,
+) -> f64 {
     let (u, v) = tangents(normal);
-    let mut polygon = Polygon::disc(reach);
-    for &j in row.iter().take(AREA_NEIGHBOURS) {
+    let mut polygon = unit.scaled(reach);
+    for j in near {
         let d = points[j as usize] - points[i];
         let to = DVec2::new(d.dot(u), d.dot(v));
         // A neighbour more than half a reach off the plane is of another sheet.
@@ -67,6 +85,10 @@ impl Polygon {
         let corner =
             |k: usize| if k < CORNERS { r * DVec2::from_angle(step * k as f64) } else { DVec2::ZERO };
         Polygon { corners: std::array::from_fn(corner), len: CORNERS }
+    }
+
+    fn scaled(&self, by: f64) -> Polygon {
+        Polygon { corners: self.corners.map(|c| by * c), len: self.len }
     }
 
     /// Keeps what has `x . to <= limit` (Sutherland and Hodgman 1974).
@@ -108,14 +130,12 @@ impl Polygon {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cloud::neighbours::Neighbours;
 
     #[test]
     fn cells_of_a_lattice_are_its_squares_and_a_lone_cell_is_the_disc() {
         let points: Vec<DVec3> =
             (0..49).map(|i| DVec3::new(f64::from(i % 7), f64::from(i / 7), 0.0)).collect();
-        let table = Neighbours::new(&points).table(AREA_NEIGHBOURS);
-        let found = areas(&points, &[DVec3::Z; 49], &[2.5; 49], &table);
+        let found = areas(&points, &[DVec3::Z; 49], &[2.5; 49], &Neighbours::new(&points));
         assert!((found[24] - 1.0).abs() < 1e-14, "{}", found[24]);
         assert!(found[0] < 3.1 && 1.5 < found[0], "a corner: {}", found[0]);
         let disc = Polygon::disc(2.0).area();

@@ -1,15 +1,15 @@
-//! Points at one and the same position become one sample.
+//! Points at one and the same position become one sample; samples that are near in space lie near in memory.
 
 use glam::DVec3;
 
-use super::Cloud;
+use super::{Cloud, order};
 
 /// Normals of one position whose sum is shorter than this share of their number cancel: their mean would be
 /// more than 84 degrees from one of two, and points along the surface rather than out of it.
 const CANCELLED: f64 = 0.1;
 
 /// Merges points of equal position: their normals are summed (missing where they cancel), their colours
-/// averaged. The points come back sorted by position, so that their order in the file is forgotten.
+/// averaged. The points come back in Morton order, those of one cell by position, so that their order in the file is forgotten.
 pub fn merge_duplicates(cloud: Cloud) -> Cloud {
     let Cloud { points, normals, colors, dropped, mut notes } = cloud;
     let key = |i: u32| {
@@ -18,15 +18,18 @@ pub fn merge_duplicates(cloud: Cloud) -> Cloud {
         let c = colors.as_ref().map_or([0.0; 3], |c| c[i]);
         (points[i].to_array(), n, c)
     };
-    let mut order: Vec<u32> = (0..points.len() as u32).collect();
-    // By normal and colour too: sums of one position must not depend on the order of the file.
-    order.sort_unstable_by(|&i, &j| {
-        let (a, b) = (key(i), key(j));
-        let position = compare(&a.0, &b.0, f64::total_cmp);
-        position
-            .then_with(|| compare(&a.1, &b.1, f64::total_cmp))
-            .then_with(|| compare(&a.2, &b.2, f32::total_cmp))
-    });
+    let mut order = order::morton(&points);
+    for cell in order.chunk_by_mut(|a, b| a.0 == b.0).filter(|cell| 1 < cell.len()) {
+        // By normal and colour too: sums of one position must not depend on the order of the file.
+        cell.sort_unstable_by(|&(_, i), &(_, j)| {
+            let (a, b) = (key(i), key(j));
+            let position = compare(&a.0, &b.0, f64::total_cmp);
+            position
+                .then_with(|| compare(&a.1, &b.1, f64::total_cmp))
+                .then_with(|| compare(&a.2, &b.2, f32::total_cmp))
+        });
+    }
+    let order: Vec<u32> = order.into_iter().map(|(_, i)| i).collect();
     let mut merged = Cloud {
         points: Vec::with_capacity(points.len()),
         normals: normals.as_ref().map(|_| Vec::with_capacity(points.len())),

@@ -1,8 +1,8 @@
 //! Rims of the holes in a cloud. How a hole is closed is left to the surface.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::Samples;
@@ -22,9 +22,9 @@ const DISC: f64 = 2.0;
 const CREASE: f64 = 2.0;
 
 /// Samples whose spacings are asked for the local one: at a rim the own spacing is 1.4 times too large.
-const AROUND: usize = 30;
+const AROUND: usize = 16;
 
-/// So many nearest samples are asked first: usually they leave no gap.
+/// So many nearest samples are asked first, then as many more: usually they leave no gap.
 const FEW: usize = 8;
 
 /// Rims of fewer samples are chance: an empty disc in a random sampling touches three to five, a round hole of
@@ -51,20 +51,22 @@ pub struct Hole {
 /// each touched by an empty disc of two spacings' radius in its tangent plane (the rim of the alpha shape,
 /// Edelsbrunner and Muecke 1994), linked where one disc may touch both.
 pub fn holes(samples: &Samples) -> Vec<Hole> {
-    let tree = Neighbours::new(&samples.points);
-    let least = DISC * samples.spacing.iter().copied().fold(f64::INFINITY, f64::min);
-    let touch = |(near, arcs): &mut (Vec<Near>, Vec<[f64; 2]>), i: usize| {
-        // Discs that a few near samples fill already, though no disc here is smaller: nearly all.
-        tree.nearest(samples.points[i], FEW + 1, near);
-        if !has_gap(samples, i, near, least, arcs) {
-            return None;
-        }
-        let radius = disc_radius(samples, &tree, i, near);
+    holes_by(samples, &Neighbours::new(&samples.points))
+}
+
+/// The same, given the search tree of the samples.
+pub fn holes_by(samples: &Samples, tree: &Neighbours) -> Vec<Hole> {
+    let may = tree.map(AROUND, |i, near| {
+        let radius = disc_radius(samples, i as usize, near);
+        may_be_open(samples, i as usize, near, radius).then_some(radius)
+    });
+    let touch = |(near, arcs): &mut (Vec<Near>, Vec<[f64; 2]>), (i, radius): (usize, &Option<f64>)| {
+        let radius = (*radius)?;
         tree.within(samples.points[i], 2.0 * radius, near);
         is_open(samples, i, near, radius, arcs).then_some((i as u32, radius))
     };
     let open: Vec<Option<(u32, f64)>> =
-        (0..samples.len()).into_par_iter().map_init(Default::default, touch).collect();
+        may.par_iter().enumerate().map_init(Default::default, touch).collect();
     let rim: Vec<(u32, f64)> = open.into_iter().flatten().collect();
     let labels = linked(samples, &rim).labels();
     let mut order: Vec<usize> = (0..rim.len()).collect();
@@ -124,14 +126,28 @@ fn hole(samples: &Samples, rim: Vec<(u32, f64)>) -> Option<Hole> {
     (LEAST_RIM <= rim.len() && is_wide).then_some(Hole { rim, bounds, width })
 }
 
-/// [`DISC`] times the median spacing around a sample.
-fn disc_radius(samples: &Samples, tree: &Neighbours, i: usize, near: &mut Vec<Near>) -> f64 {
-    tree.nearest(samples.points[i], AROUND + 1, near);
-    let mut around = [0.0; AROUND + 1];
+/// [`DISC`] times the median spacing of a sample and those around it.
+fn disc_radius(samples: &Samples, i: usize, near: &[Near]) -> f64 {
+    let mut around = [samples.spacing[i]; AROUND + 1];
     near.iter().zip(&mut around).for_each(|(n, s)| *s = samples.spacing[n.index as usize]);
-    let around = &mut around[..near.len()];
-    around.sort_unstable_by(f64::total_cmp);
-    DISC * around[around.len() / 2]
+    let around = &mut around[..near.len() + 1];
+    DISC * *around.select_nth_unstable_by(near.len() / 2, f64::total_cmp).1
+}
+
+/// Whether a few near samples leave a gap, and so more may.
+fn may_be_open(samples: &Samples, i: usize, near: &[Near], radius: f64) -> bool {
+    let frame = tangents(samples.normals[i]);
+    let (mut arcs, mut len) = ([[0.0; 2]; AROUND], 0);
+    for few in near.chunks(FEW) {
+        for arc in few.iter().filter_map(|n| arc(samples, i, n.index as usize, radius, frame)) {
+            arcs[len] = arc;
+            len += 1;
+        }
+        if !leave_gap(&mut arcs[..len]) {
+            return false;
+        }
+    }
+    true
 }
 
 /// Whether some disc of `radius` in the tangent plane of sample `i`, its edge on the sample, holds none of the
@@ -144,31 +160,71 @@ fn is_open(samples: &Samples, i: usize, near: &[Near], radius: f64, arcs: &mut V
     if near.iter().any(|n| n.distance_squared <= crease && faces_away(n)) {
         return false;
     }
-    has_gap(samples, i, near, radius, arcs)
+    let frame = tangents(normal);
+    arcs.clear();
+    arcs.extend(near.iter().filter_map(|n| arc(samples, i, n.index as usize, radius, frame)));
+    leave_gap(arcs)
 }
 
-/// Whether the arcs of these samples leave a gap.
-fn has_gap(samples: &Samples, i: usize, near: &[Near], radius: f64, arcs: &mut Vec<[f64; 2]>) -> bool {
-    let normal = samples.normals[i];
-    let (u, v) = tangents(normal);
-    arcs.clear();
-    for n in near.iter().map(|n| n.index as usize).filter(|&n| n != i && 0.0 < samples.normals[n].dot(normal))
-    {
-        let d = samples.points[n] - samples.points[i];
-        let (x, y) = (d.dot(u), d.dot(v));
-        let half = (x.hypot(y) / (2.0 * radius)).min(1.0).acos();
-        let from = y.atan2(x) - half;
-        let from = if from < -PI { from + TAU } else { from };
-        arcs.push([from, from + 2.0 * half]);
+/// The arc of the directions in which discs of sample `i` hold sample `n`, if any, by [`along_square`].
+fn arc(samples: &Samples, i: usize, n: usize, radius: f64, (u, v): (DVec3, DVec3)) -> Option<[f64; 2]> {
+    if n == i || samples.normals[n].dot(samples.normals[i]) <= 0.0 {
+        return None;
     }
+    let d = samples.points[n] - samples.points[i];
+    let d = DVec2::new(d.dot(u), d.dot(v));
+    let length = d.length();
+    // Straight above or below it is in all discs to one side; any.
+    let to = if 0.0 < length { d / length } else { DVec2::X };
+    let cos = length / (2.0 * radius);
+    if 1.0 <= cos {
+        return None;
+    }
+    let half = DVec2::new(cos, (1.0 - cos * cos).sqrt());
+    let [from, end] = [DVec2::new(half.x, -half.y), half].map(|half| along_square(half.rotate(to)));
+    Some([from, if end < from { end + FULL } else { end }])
+}
+
+/// How far along the square with its corners on the axes a direction points, counted from x to y: it grows with the angle, and
+/// takes a quotient where that takes an arc tangent.
+fn along_square(d: DVec2) -> f64 {
+    let across = d.x / (d.x.abs() + d.y.abs());
+    if d.y < 0.0 { 3.0 + across } else { 1.0 - across }
+}
+
+/// All the way round, by [`along_square`].
+const FULL: f64 = 4.0;
+
+/// Whether arcs leave a direction out.
+fn leave_gap(arcs: &mut [[f64; 2]]) -> bool {
     arcs.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
     // What the last arcs cover beyond the end of the circle.
-    let mut covered = arcs.iter().map(|arc| arc[1] - TAU).fold(-PI, f64::max);
+    let mut covered = arcs.iter().map(|arc| arc[1] - FULL).fold(0.0, f64::max);
     for arc in arcs.iter() {
         if covered < arc[0] {
             return true;
         }
         covered = covered.max(arc[1]);
     }
-    covered < PI
+    covered < FULL
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_way_along_a_square_grows_with_the_angle() {
+        let all: Vec<f64> =
+            (0..1000).map(|k| along_square(DVec2::from_angle(TAU * f64::from(k) / 1000.0))).collect();
+        assert!(all.is_sorted_by(|a, b| a < b) && 0.0 <= all[0] && all[999] < FULL);
+    }
+
+    #[test]
+    fn arcs_leave_a_gap_unless_they_go_all_the_way_round() {
+        assert!(leave_gap(&mut []));
+        assert!(leave_gap(&mut [[0.0, 3.0]]));
+        assert!(!leave_gap(&mut [[3.0, 5.0], [0.5, 3.5]]));
+        assert!(leave_gap(&mut [[3.0, 4.5], [0.6, 3.5]]));
+    }
 }

@@ -17,7 +17,7 @@
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::neighbours::{Near, Table};
+use super::neighbours::{Near, Neighbours, Table};
 use super::normals::NORMAL_NEIGHBOURS;
 use super::peers::Peers;
 use crate::num::eigen::symmetric3;
@@ -40,9 +40,9 @@ const LEAST_PEERS: usize = 6;
 /// Points that fill space have 0.2 among 16 neighbours, noisy scans below 0.05.
 const FILLS: f64 = 0.1;
 
-/// Whether each sample is lone or strewn. `table` has rows of at least [`NORMAL_NEIGHBOURS`] where there are so many.
-pub fn loose(points: &[DVec3], spacing: &[f64], table: &Table) -> Vec<bool> {
-    let peers = Peers::new(points, spacing);
+/// Whether each sample is lone or strewn. `tree` is that of the points, `table` has rows of at least [`NORMAL_NEIGHBOURS`] where there are so many.
+pub fn loose(points: &[DVec3], spacing: &[f64], table: &Table, tree: &Neighbours) -> Vec<bool> {
+    let peers = Peers::new(tree, spacing);
     let is_loose = |near: &mut Vec<Near>, i: usize| {
         is_lone(points, spacing, table.row(i), points[i]) || is_strewn(&peers, points, spacing, i, near)
     };
@@ -54,19 +54,20 @@ fn is_lone(points: &[DVec3], spacing: &[f64], row: &[u32], p: DVec3) -> bool {
     if row.len() < FEWEST {
         return false;
     }
-    let mut own: Vec<f64> = row.iter().map(|&j| spacing[j as usize]).collect();
-    let middle = own.len() / 2;
-    let unit = *own.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let mut near: Vec<DVec3> = row.iter().map(|&j| points[j as usize] - p).collect();
-    let Plane { center, normal, .. } = Plane::of(&near);
+    let (mut own, mut near) = ([0.0; NORMAL_NEIGHBOURS], [DVec3::ZERO; NORMAL_NEIGHBOURS]);
+    let (own, near) = (&mut own[..row.len()], &mut near[..row.len()]);
+    for (&j, (own, near)) in row.iter().zip(own.iter_mut().zip(near.iter_mut())) {
+        (*own, *near) = (spacing[j as usize], points[j as usize] - p);
+    }
+    let unit = *own.select_nth_unstable_by(row.len() / 2, f64::total_cmp).1;
+    let Plane { center, normal, .. } = Plane::of(near);
     // Two strays among sixteen tilt the plane, but not so much that the sample comes this close.
     if normal.dot(center).abs() <= 0.5 * OFF * unit {
         return false;
     }
     let distance = |d: &DVec3| normal.dot(*d - center).abs();
     near.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-    near.truncate(near.len() - TRIMMED);
-    let Plane { center, normal, deviation, radius } = Plane::of(&near);
+    let Plane { center, normal, deviation, radius } = Plane::of(&near[..row.len() - TRIMMED]);
     let off = normal.dot(center).abs();
     let beside = (center - normal * normal.dot(center)).length();
     OFF * unit < off && LONE * deviation < off && beside < radius
@@ -103,7 +104,7 @@ fn is_strewn(peers: &Peers<'_>, points: &[DVec3], spacing: &[f64], i: usize, nea
     if !peers.are_denser(p, reach, own / DENSER, NORMAL_NEIGHBOURS) {
         return false;
     }
-    peers.nearest(i as u32, own / DENSER, NORMAL_NEIGHBOURS, near);
+    peers.nearest((i as u32, p), own / DENSER, NORMAL_NEIGHBOURS, near);
     if near.iter().filter(|n| n.distance_squared <= reach * reach).count() < LEAST_PEERS {
         return true;
     }

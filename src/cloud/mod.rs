@@ -24,7 +24,7 @@ pub mod winding;
 
 use glam::DVec3;
 
-pub use areas::{AREA_NEIGHBOURS, AREA_REACH, areas};
+pub use areas::{AREA_REACH, areas, areas_by};
 pub use duplicates::merge_duplicates;
 pub use error::{CloudError, CloudFault};
 pub use extent::{check_extent, coordinate_step, is_single};

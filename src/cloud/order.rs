@@ -1,6 +1,7 @@
 //! The order of samples in memory: along Morton's curve, so that neighbours in space are near in memory.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::Cloud;
 use crate::geom::Aabb;
@@ -8,19 +9,18 @@ use crate::geom::Aabb;
 /// Bits for each axis: three of them fill a 64-bit key.
 const BITS: u32 = 21;
 
-/// The cloud in Morton order (Morton 1966) within the cube around it; points of one cell keep their order.
-pub fn sort_morton(cloud: Cloud) -> Cloud {
-    let bounds = Aabb::of_points(cloud.points.iter().copied());
+/// The points in Morton order (Morton 1966) within the cube around them: keys and indices, those of one cell by index.
+pub fn morton(points: &[DVec3]) -> Vec<(u64, u32)> {
+    let bounds = Aabb::of_points(points.iter().copied());
     let side = bounds.size().max_element();
     let cells = f64::from((1u32 << BITS) - 1);
     let key = |p: DVec3| {
         let cell = ((p - bounds.min) / side).clamp(DVec3::ZERO, DVec3::ONE) * cells;
         spread(cell.x as u64) | spread(cell.y as u64) << 1 | spread(cell.z as u64) << 2
     };
-    let mut order: Vec<(u64, u32)> = cloud.points.iter().zip(0u32..).map(|(p, i)| (key(*p), i)).collect();
-    order.sort_unstable();
-    let order: Vec<u32> = order.into_iter().map(|(_, i)| i).collect();
-    select(cloud, &order)
+    let mut order: Vec<(u64, u32)> = points.iter().zip(0u32..).map(|(p, i)| (key(*p), i)).collect();
+    order.par_sort_unstable();
+    order
 }
 
 /// The points of the given indices, in that order.

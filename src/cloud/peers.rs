@@ -2,31 +2,35 @@
 
 use glam::DVec3;
 
-use super::neighbours::{Near, keep};
-use super::tree::Tree;
-
-/// Samples of a leaf.
-const LEAF: usize = 8;
+use super::neighbours::{Near, Neighbours, keep};
+use super::tree::{Node, Tree};
 
 /// Samples and their spacing, ready to be asked.
 pub struct Peers<'a> {
-    tree: Tree,
+    tree: &'a Tree,
+    /// In the order of the tree.
     points: &'a [DVec3],
-    spacing: &'a [f64],
+    spacing: Vec<f64>,
     /// Least and largest spacing below each node.
     ranges: Vec<[f64; 2]>,
 }
 
 impl Peers<'_> {
-    /// Builds the tree, O(n log n).
-    pub fn new<'a>(points: &'a [DVec3], spacing: &'a [f64]) -> Peers<'a> {
-        let tree = Tree::new(points, LEAF);
-        let range = |node: &super::tree::Node| {
-            let ids = &tree.order[node.start as usize..node.end as usize];
-            let all = ids.iter().map(|&i| spacing[i as usize]);
-            all.fold([f64::INFINITY, 0.0], |[a, b], s| [s.min(a), s.max(b)])
-        };
-        let ranges = tree.nodes.iter().map(range).collect();
+    /// Of all points of a search, with the spacing of each.
+    pub fn new<'a>(near: &'a Neighbours, spacing: &[f64]) -> Peers<'a> {
+        let (tree, points) = (near.tree(), near.in_order());
+        let spacing: Vec<f64> = tree.order.iter().map(|&i| spacing[i as usize]).collect();
+        let mut ranges = vec![[f64::INFINITY, 0.0]; tree.nodes.len()];
+        // Children come after their parents.
+        for (at, node) in tree.nodes.iter().enumerate().rev() {
+            let join = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a.min(c), b.max(d)];
+            ranges[at] = if tree.is_leaf(at) {
+                spacing[places(node)].iter().fold(ranges[at], |range, s| join(range, [*s, *s]))
+            } else {
+                let [a, b] = tree.children(at).map(|child| ranges[child]);
+                join(a, b)
+            };
+        }
         Peers { tree, points, spacing, ranges }
     }
 
@@ -42,11 +46,10 @@ impl Peers<'_> {
                 node += 1;
                 continue;
             }
-            let near = |i: &&u32| {
-                self.spacing[**i as usize] < below && self.points[**i as usize].distance_squared(x) <= limit
-            };
+            let near =
+                |at: &usize| self.spacing[*at] < below && self.points[*at].distance_squared(x) <= limit;
             if may {
-                found += self.tree.order[at.start as usize..at.end as usize].iter().filter(near).count();
+                found += places(at).filter(near).count();
             }
             if count <= found {
                 return true;
@@ -56,10 +59,10 @@ impl Peers<'_> {
         false
     }
 
-    /// The `k` samples nearest to sample `own`, itself not among them, of a spacing of at least `least`, nearest first.
-    pub fn nearest(&self, own: u32, least: f64, k: usize, out: &mut Vec<Near>) {
+    /// The `k` samples nearest to sample `own`, which is at `x` and not among them, of a spacing of at least `least`, nearest
+    /// first.
+    pub fn nearest(&self, (own, x): (u32, DVec3), least: f64, k: usize, out: &mut Vec<Near>) {
         out.clear();
-        let x = self.points[own as usize];
         self.tree.walk_near(
             x,
             out,
@@ -67,16 +70,19 @@ impl Peers<'_> {
                 least <= self.ranges[node][1] && !(out.len() == k && out[k - 1].distance_squared < distance)
             },
             |out, node| {
-                let at = &self.tree.nodes[node];
-                for &index in &self.tree.order[at.start as usize..at.end as usize] {
-                    if index != own && least <= self.spacing[index as usize] {
-                        let distance_squared = self.points[index as usize].distance_squared(x);
-                        keep(out, k, Near { distance_squared, index });
+                for at in places(&self.tree.nodes[node]) {
+                    let index = self.tree.order[at];
+                    if index != own && least <= self.spacing[at] {
+                        keep(out, k, Near { distance_squared: self.points[at].distance_squared(x), index });
                     }
                 }
             },
         );
     }
+}
+
+fn places(node: &Node) -> std::ops::Range<usize> {
+    node.start as usize..node.end as usize
 }
 
 #[cfg(test)]
@@ -89,7 +95,8 @@ mod tests {
         let mut stream = Stream::new(5);
         let points: Vec<DVec3> = (0..500).map(|_| stream.direction() * stream.unit()).collect();
         let spacing: Vec<f64> = (0..500).map(|_| 0.1 + stream.unit()).collect();
-        let peers = Peers::new(&points, &spacing);
+        let tree = Neighbours::new(&points);
+        let peers = Peers::new(&tree, &spacing);
         let mut near = Vec::new();
         for own in 0..500u32 {
             let (p, least) = (points[own as usize], 0.1 + stream.unit());
@@ -97,7 +104,7 @@ mod tests {
             all.sort_by(|&a, &b| {
                 p.distance(points[a as usize]).total_cmp(&p.distance(points[b as usize])).then(a.cmp(&b))
             });
-            peers.nearest(own, least, 7, &mut near);
+            peers.nearest((own, p), least, 7, &mut near);
             let found: Vec<u32> = near.iter().map(|n| n.index).collect();
             assert_eq!(found, all[..7.min(all.len())]);
             let denser = (0..500).filter(|&i| spacing[i] < 0.3 && p.distance(points[i]) <= 0.3).count();

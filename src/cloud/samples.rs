@@ -7,14 +7,9 @@ use super::neighbours::{Neighbours, Table};
 use super::normals::{self, NORMAL_NEIGHBOURS, Oriented, Scene};
 use super::winding::Winding;
 use super::{
-    AREA_NEIGHBOURS, AREA_REACH, Cloud, CloudError, areas, check_extent, merge_duplicates, order, spacing,
-    strays,
+    AREA_REACH, Cloud, CloudError, areas_by, check_extent, merge_duplicates, order, spacing, strays,
 };
 use crate::geom::Aabb;
-
-/// Neighbours of the table that everything shares.
-const NEIGHBOURS: usize =
-    if NORMAL_NEIGHBOURS < AREA_NEIGHBOURS { AREA_NEIGHBOURS } else { NORMAL_NEIGHBOURS };
 
 /// With a twentieth of the samples strewn through and about a ball the fifth round found none; a spike one sample high
 /// loses no more samples of its end than this.
@@ -79,16 +74,21 @@ impl Samples {
     /// Merges, sorts and measures the points of a cloud. Fails where they carry no surface, and where an option is
     /// no positive number.
     pub fn new(cloud: Cloud, options: &SampleOptions) -> Result<Samples, CloudError> {
+        Ok(Samples::with_tree(cloud, options)?.0)
+    }
+
+    /// The same, with the search tree of the points, for who asks on.
+    pub fn with_tree(cloud: Cloud, options: &SampleOptions) -> Result<(Samples, Neighbours), CloudError> {
         check_options(options)?;
         check_extent(&cloud.points)?;
-        let mut cloud = order::sort_morton(merge_duplicates(cloud));
+        let mut cloud = merge_duplicates(cloud);
         let mut measured = Measured::new(&cloud.points);
         if !options.keep_strays {
             (cloud, measured) = without_strays(cloud, measured)?;
         }
         let Cloud { points, normals, colors, mut notes, .. } = cloud;
-        let Measured { table, spacing, widths } = measured;
-        let widths = spacing::capped(&points, &spacing, widths);
+        let Measured { tree, table, spacing, widths } = measured;
+        let widths = spacing::capped(&points, &spacing, widths, &tree);
         let scene = Scene { points: &points, table: &table, widths: &widths };
         let given = normals.filter(|_| options.normals == NormalSource::File);
         let estimated = given.is_none();
@@ -96,7 +96,8 @@ impl Samples {
         let Oriented { normals, opposed, turned, notes: more } = oriented;
         notes.extend(more);
         let widths = widths.iter().map(|h| options.width.unwrap_or(*h) * options.smoothing).collect();
-        Ok(Samples { points, normals, widths, spacing, colors, opposed, turned, estimated, notes })
+        let samples = Samples { points, normals, widths, spacing, colors, opposed, turned, estimated, notes };
+        Ok((samples, tree))
     }
 
     /// How many there are.
@@ -118,7 +119,7 @@ impl Samples {
     pub fn winding(&self, opening: f64) -> Winding {
         let measured = Measured::new(&self.points);
         let reach: Vec<f64> = measured.widths.iter().map(|h| AREA_REACH * h).collect();
-        let areas = areas(&self.points, &self.normals, &reach, &measured.table);
+        let areas = areas_by(&self.points, &self.normals, &reach, &measured.table);
         Winding::new(&self.points, &self.normals, &areas, opening)
     }
 }
@@ -127,7 +128,8 @@ impl Samples {
 fn without_strays(mut cloud: Cloud, mut measured: Measured) -> Result<(Cloud, Measured), CloudError> {
     let before = cloud.points.len();
     for _ in 0..STRAY_ROUNDS {
-        let stray = strays::strays(&cloud.points, &measured.spacing, &measured.widths, &measured.table);
+        let Measured { tree, table, spacing, widths } = &measured;
+        let stray = strays::strays(&cloud.points, spacing, widths, table, tree);
         let found = stray.iter().filter(|stray| **stray).count();
         if found == 0 {
             break;
@@ -149,6 +151,7 @@ fn without_strays(mut cloud: Cloud, mut measured: Measured) -> Result<(Cloud, Me
 
 /// What depends on positions alone.
 struct Measured {
+    tree: Neighbours,
     table: Table,
     spacing: Vec<f64>,
     widths: Vec<f64>,
@@ -156,10 +159,11 @@ struct Measured {
 
 impl Measured {
     fn new(points: &[DVec3]) -> Measured {
-        let table = Neighbours::new(points).table(NEIGHBOURS);
+        let tree = Neighbours::new(points);
+        let table = tree.table(NORMAL_NEIGHBOURS);
         let spacing = spacing::spacing(points, &table);
         let widths = spacing::widths(&spacing, &table);
-        Measured { table, spacing, widths }
+        Measured { tree, table, spacing, widths }
     }
 }
 

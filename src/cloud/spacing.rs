@@ -47,13 +47,13 @@ const DENSER: f64 = 4.0;
 
 /// Widths such that the ball of no width holds more than [`MOST_DENSE`] samples four times as dense as its own: a width that does
 /// ends at as many samples. Where the density changes smoothly by 10,000 to 1
-/// no weight holds so many, and all are left alone.
-pub fn capped(points: &[DVec3], spacing: &[f64], mut widths: Vec<f64>) -> Vec<f64> {
+/// no weight holds so many, and all are left alone. `tree` is that of the points.
+pub fn capped(points: &[DVec3], spacing: &[f64], mut widths: Vec<f64>, tree: &Neighbours) -> Vec<f64> {
     let (least, most) = widths.iter().fold((f64::INFINITY, 0.0f64), |(a, b), w| (w.min(a), w.max(b)));
     if most <= DENSER * least {
         return widths;
     }
-    let (peers, tree) = (Peers::new(points, spacing), Neighbours::new(points));
+    let peers = Peers::new(tree, spacing);
     let cap = |near: &mut Vec<Near>, (p, width): (&DVec3, &mut f64)| {
         let denser = *width / (WIDTH_PER_SPACING * DENSER);
         if denser <= least / WIDTH_PER_SPACING || !peers.are_denser(*p, *width, denser, MOST_DENSE) {

@@ -37,9 +37,15 @@ const ROUGH: f64 = 0.1;
 /// such as what is left inside a body of which only the skin was wanted.
 ///
 /// All rules are relative, so a cloud of uneven density keeps its sparse parts as long as they are smooth. What is left may
-/// have strays that others hid: ask again.
-pub fn strays(points: &[DVec3], spacing: &[f64], widths: &[f64], table: &Table) -> Vec<bool> {
-    let mut strays = loose(points, spacing, table);
+/// have strays that others hid: ask again. `tree` is that of the points.
+pub fn strays(
+    points: &[DVec3],
+    spacing: &[f64],
+    widths: &[f64],
+    table: &Table,
+    tree: &Neighbours,
+) -> Vec<bool> {
+    let mut strays = loose(points, spacing, table, tree);
     of_groups(points, spacing, widths, table, &mut strays);
     strays
 }
@@ -52,6 +58,9 @@ fn of_groups(points: &[DVec3], spacing: &[f64], widths: &[f64], table: &Table, s
     let groups: Vec<&[u32]> = order.chunk_by(|&i, &j| labels[i as usize] == labels[j as usize]).collect();
     let largest = groups.iter().map(|group| group.len()).max().unwrap_or(0);
     let is_body = |group: &&&[u32]| BODY * points.len() as f64 <= group.len() as f64;
+    if groups.iter().all(|group| is_body(&group)) {
+        return;
+    }
     let body: Vec<u32> = groups.iter().filter(is_body).flat_map(|group| group.iter().copied()).collect();
     let body_points: Vec<DVec3> = body.iter().map(|&i| points[i as usize]).collect();
     let tree = Neighbours::new(&body_points);

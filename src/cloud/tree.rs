@@ -33,16 +33,20 @@ pub struct Tree {
 impl Tree {
     /// Splits at the median of the widest side until at most `leaf` points are left, or all are equal. Points
     /// of equal coordinates are told apart by index, so the tree is a function of the points' order alone.
-    pub fn new(points: &[DVec3], leaf: usize) -> Tree {
-        let mut tree = Tree { nodes: Vec::new(), order: (0..points.len() as u32).collect() };
+    ///
+    /// Returns the points in the order of the tree with it.
+    pub fn new(points: &[DVec3], leaf: usize) -> (Tree, Vec<DVec3>) {
+        // Moved along with their indices: a split goes through memory once, from one end to the other.
+        let mut sorted: Vec<(DVec3, u32)> = points.iter().copied().zip(0..).collect();
+        let mut tree = Tree { nodes: Vec::new(), order: Vec::new() };
         // Halving: at most 2^32 points make a stack of 33.
         let mut open: Vec<(usize, usize)> = Vec::new();
         if !points.is_empty() {
             open.push((0, points.len()));
         }
         while let Some((start, end)) = open.pop() {
-            let part = &mut tree.order[start..end];
-            let bounds = Aabb::of_points(part.iter().map(|&i| points[i as usize]));
+            let part = &mut sorted[start..end];
+            let bounds = Aabb::of_points(part.iter().map(|p| p.0));
             tree.nodes.push(Node { bounds, start: start as u32, end: end as u32, skip: 0 });
             let size = bounds.size();
             if part.len() <= leaf || size.max_element() == 0.0 {
@@ -50,15 +54,13 @@ impl Tree {
             }
             let axis = size.max_position();
             let half = part.len() / 2;
-            part.select_nth_unstable_by(half, |&i, &j| {
-                let (a, b) = (points[i as usize][axis], points[j as usize][axis]);
-                a.total_cmp(&b).then(i.cmp(&j))
-            });
+            part.select_nth_unstable_by(half, |(a, i), (b, j)| a[axis].total_cmp(&b[axis]).then(i.cmp(j)));
             open.push((start + half, end));
             open.push((start, start + half));
         }
         tree.link();
-        tree
+        tree.order = sorted.iter().map(|p| p.1).collect();
+        (tree, sorted.into_iter().map(|p| p.0).collect())
     }
 
     /// Sets `skip`: the next node that begins at or after the end of this one.

@@ -64,11 +64,11 @@ impl Winding {
     /// Builds the tree. Normals have unit length and point out; `areas` are those of [`super::areas()`]. An infinite
     /// `opening` gives the plain sum.
     pub fn new(points: &[DVec3], normals: &[DVec3], areas: &[f64], opening: f64) -> Winding {
-        let tree = Tree::new(points, LEAF);
+        let (tree, points) = Tree::new(points, LEAF);
         let mut winding = Winding {
             heads: Vec::with_capacity(tree.nodes.len()),
             moments: Vec::with_capacity(tree.nodes.len()),
-            points: tree.order.iter().map(|&i| points[i as usize]).collect(),
+            points,
             dipoles: tree
                 .order
                 .iter()

@@ -113,6 +113,11 @@ impl Aabb {
         (p - p.clamp(self.min, self.max)).length_squared()
     }
 
+    /// Squared distance of two boxes; zero where they touch.
+    pub fn gap_squared(&self, other: &Aabb) -> f64 {
+        (other.min - self.max).max(self.min - other.max).max(DVec3::ZERO).length_squared()
+    }
+
     /// The part of the ray's line inside the box, widened by a few ulps so that rounding loses nothing;
     /// empty where the line misses. A ray in a face counts as inside (0 * inf never arises).
     pub fn clip(&self, ray: &Ray) -> Interval {

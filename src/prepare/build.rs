@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::fitness::{self, Concern, Fitness};
 use super::{ScanReport, complaint, files};
-use crate::cloud::holes::{Hole, holes};
+use crate::cloud::holes::{Hole, holes_by};
 use crate::cloud::neighbours::Neighbours;
 use crate::cloud::scraps::bounding;
 use crate::cloud::winding::Winding;
@@ -23,6 +23,8 @@ use crate::source::Span;
 #[derive(Debug)]
 struct Scan {
     whole: Part,
+    /// The search tree of the samples, until their holes are known.
+    tree: Option<Neighbours>,
     sampling: SampleOptions,
     options: Options,
     measured: Option<(Solidity, Arc<PointSet>)>,
@@ -171,8 +173,9 @@ impl<'a> Builder<'a> {
             keep_strays: false,
         };
         let single = is_single(&cloud.points);
-        let samples = Samples::new(cloud, &options).map_err(|e| cloud_complaint(call, "the cloud", e))?;
-        let (made, tree) = (points::options(call), Neighbours::new(&samples.points));
+        let made = Samples::with_tree(cloud, &options);
+        let (samples, tree) = made.map_err(|e| cloud_complaint(call, "the cloud", e))?;
+        let made = points::options(call);
         if let Some(name) = ["h", "smoothing"].into_iter().find(|name| call.get(name).is_some())
             && let Some(message) = fitness::too_wide(&samples)
         {
@@ -183,7 +186,9 @@ impl<'a> Builder<'a> {
         let concerns = Fitness::new(&samples, &tree, single, made.mixed).concerns();
         let warning = |c: Concern| Diagnostic::warning(c.code, c.message).at(call.at, "").help(c.help);
         self.warnings.extend(concerns.into_iter().map(warning));
-        Ok(self.add(name, samples, options, made))
+        let id = self.add(name, samples, options, made);
+        self.scan[id.0].tree = Some(tree);
+        Ok(id)
     }
 
     /// Adds a scan.
@@ -195,8 +200,15 @@ impl<'a> Builder<'a> {
         let name = name.to_owned();
         self.scans.push(ScanReport { name, samples: samples.len(), estimated, notes, solidity: None });
         let whole = Part::new(samples, &options);
-        let scan = Scan { whole, sampling, options, measured: None, bounding: None, closed: Vec::new() };
-        self.scan.push(scan);
+        self.scan.push(Scan {
+            whole,
+            tree: None,
+            sampling,
+            options,
+            measured: None,
+            bounding: None,
+            closed: Vec::new(),
+        });
         ScanId(self.scan.len() - 1)
     }
 
@@ -240,11 +252,12 @@ impl<'a> Builder<'a> {
     pub fn measured(&mut self, id: ScanId) -> (Solidity, Arc<PointSet>) {
         let scan = &mut self.scan[id.0];
         if scan.measured.is_none() {
-            let Part { samples, surface } = &scan.whole;
-            let mut solidity = surface.measure();
+            let mut solidity = scan.whole.surface.measure();
             if solidity.body() == Body::Solid {
-                try_holes(&mut solidity, surface, samples, &holes(samples));
+                let found = scan.whole.holes(scan.tree.take());
+                try_holes(&mut solidity, &scan.whole.surface, &scan.whole.samples, &found);
             }
+            let surface = &scan.whole.surface;
             self.counts.add(&solidity.counts);
             let surface = surface.with_body(solidity.body());
             scan.measured = Some((solidity, Arc::new(surface)));
@@ -266,7 +279,8 @@ impl<'a> Builder<'a> {
                 let note = format!("{scraps} samples bound no inside and were dropped to close the scan");
                 self.scans[id.0].notes.push(note);
             }
-            let found = holes(&part.samples);
+            let tree = scan.tree.take().filter(|_| scraps == 0);
+            let found = part.holes(tree);
             scan.bounding = Some((part, found));
         }
         let Some((part, found)) = &scan.bounding else { unreachable!("just made") };
@@ -285,6 +299,11 @@ impl Part {
     fn new(samples: Samples, options: &Options) -> Part {
         let surface = surface_of(&samples, options);
         Part { samples: Arc::new(samples), surface }
+    }
+
+    /// Their holes; a search tree of the samples serves if there is one.
+    fn holes(&self, tree: Option<Neighbours>) -> Vec<Hole> {
+        holes_by(&self.samples, &tree.unwrap_or_else(|| Neighbours::new(&self.samples.points)))
     }
 
     /// The same without samples that bound no inside, and how many these are.

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::build::try_holes;
 use super::fitness::{Fitness, asked};
-use crate::cloud::holes::holes;
+use crate::cloud::holes::holes_by;
 use crate::cloud::neighbours::{Near, Neighbours};
 use crate::cloud::{Cloud, CloudError, SampleOptions, Samples, is_single};
 use crate::solid::Body;
@@ -94,16 +94,15 @@ pub fn survey(cloud: Cloud) -> Result<Survey, CloudError> {
     let given = |n: &Vec<DVec3>| n.iter().any(|n| *n != DVec3::ZERO);
     let normals = if cloud.normals.as_ref().is_some_and(given) { "file" } else { "estimated" };
     let single = is_single(&cloud.points);
-    let mut samples = Samples::new(cloud, &SampleOptions::default())?;
+    let (mut samples, tree) = Samples::with_tree(cloud, &SampleOptions::default())?;
     let bounds = samples.bounds();
     let options = Options::default();
     let surface = PointSet::new(&samples.points, &samples.normals, &samples.widths, &options);
     let mut solidity = surface.measure_whole();
-    let found = holes(&samples);
+    let found = holes_by(&samples, &tree);
     try_holes(&mut solidity, &surface, &samples, &found);
     let body = if solidity.body() == Body::Solid { "Solid" } else { "Sheet" };
     let width = spread(&samples.widths);
-    let tree = Neighbours::new(&samples.points);
     let fitness = Fitness::new(&samples, &tree, single, options.mixed);
     Ok(Survey {
         version: 1,

@@ -140,7 +140,7 @@ pub fn from_file(scene: Scene<'_>, given: Vec<DVec3>) -> Oriented {
 
 impl Scene<'_> {
     fn areas(&self, normals: &[DVec3]) -> Vec<f64> {
-        super::areas(self.points, normals, self.widths, self.table)
+        super::areas_by(self.points, normals, self.widths, self.table)
     }
 
     /// Whether the cloud is closed and its signed volume `sum a p.n / 3` is negative.

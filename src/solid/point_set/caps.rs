@@ -85,13 +85,9 @@ impl PointSet {
 
     /// Appends every place of a stretch where the winding number passes one half.
     fn scan(&self, line: &Ray, stretch: Interval, out: &mut Vec<Cap>) {
-        // Harmonic and away from the samples, the winding number varies on the scale of the hole itself; a
-        // shorter swing would show in the slopes.
-        const CELLS: usize = 12;
-        let at = |i: usize| stretch.lo + stretch.length() * i as f64 / CELLS as f64;
-        let mut a = self.level(line, at(0));
-        for i in 1..=CELLS {
-            let b = self.level(line, at(i));
+        let mut levels = places(stretch).map(|s| self.level(line, s));
+        let Some(mut a) = levels.next() else { return };
+        for b in levels {
             self.scan_cell(line, a, b, 0, out);
             a = b;
         }
@@ -144,6 +140,13 @@ impl PointSet {
         let (w, gradient) = self.winding().value_and_gradient(line.at(s));
         Level { s, value: w - LEVEL, slope: gradient.dot(line.dir) }
     }
+}
+
+/// Where a stretch is looked at. Harmonic and away from the samples, the winding number varies on the scale of the hole itself;
+/// a shorter swing would show in the slopes.
+pub(super) fn places(stretch: Interval) -> impl Iterator<Item = f64> {
+    const CELLS: usize = 12;
+    (0..=CELLS).map(move |i| stretch.lo + stretch.length() * i as f64 / CELLS as f64)
 }
 
 #[derive(Clone, Copy, Debug)]

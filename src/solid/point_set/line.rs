@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use super::PointSet;
-use super::caps::Cap;
+use super::caps::{Cap, places};
 use super::hierarchy::{CellOn, Reach};
 use super::probe::Room;
 use super::quick::{QuickRoom, Said};
@@ -383,6 +383,13 @@ impl PointSet {
         true
     }
 
+    /// Whether the samples beside a stretch in which F is undefined say that the line stays on the side that both ends of its gap
+    /// are on: then the winding number need not be asked.
+    fn stays(&self, unit: &Ray, stretch: Interval, [before, after]: [bool; 2], line: &LineScratch) -> bool {
+        let side = |s: f64| self.side(unit.at(s), cells_at(&line.bands, &line.cells, s));
+        before == after && places(stretch).all(|s| side(s) == Some(before))
+    }
+
     /// Reports the caps of a gap.
     fn gap(
         &self,
@@ -393,10 +400,12 @@ impl PointSet {
         report: &mut impl FnMut(Crossing),
     ) {
         let Some(unit) = line.line else { return };
-        line.caps.clear();
-        let blind = line.spheres.iter().copied();
-        self.caps(&unit, gap, ends, blind, &mut line.caps);
-        for cap in &line.caps {
+        let mut caps = std::mem::take(&mut line.caps);
+        caps.clear();
+        let blind = line.spheres.iter().map(|s| s.intersect(gap));
+        let blind = blind.filter(|s| s.lo < s.hi && !self.stays(&unit, *s, ends, line));
+        self.caps(&unit, gap, ends, blind, &mut caps);
+        for cap in &caps {
             counts.caps += 1;
             counts.parity_repairs += u64::from(cap.repair);
             let err = if cap.repair { WALL * self.width_near(&unit, cap.s, line) } else { cap.err };
@@ -409,5 +418,6 @@ impl PointSet {
                 cap: true,
             });
         }
+        line.caps = caps;
     }
 }

@@ -33,7 +33,7 @@ pub use thick::{Thick, ThickLine};
 
 use crate::cloud::neighbours::Neighbours;
 use crate::cloud::winding::Winding;
-use crate::cloud::{AREA_NEIGHBOURS, AREA_REACH, areas};
+use crate::cloud::{AREA_REACH, areas};
 use crate::geom::{Aabb, Interval, Ray, tolerance};
 use crate::mls::{Compact, Form, Gaussian};
 use crate::num::median::median;
@@ -188,9 +188,8 @@ impl PointSet {
     fn winding(&self) -> &Winding {
         self.winding.get_or_init(|| {
             let Hierarchy { points, normals, widths, .. } = &*self.samples;
-            let table = Neighbours::new(points).table(AREA_NEIGHBOURS);
             let reach: Vec<f64> = widths.iter().map(|h| AREA_REACH * h).collect();
-            let areas = areas(points, normals, &reach, &table);
+            let areas = areas(points, normals, &reach, &Neighbours::new(points));
             Winding::new(points, normals, &areas, CAP_OPENING)
         })
     }
