@@ -189,6 +189,9 @@ impl<'a> Look<'a> {
     /// Whether it is inside where these leaves are.
     #[inline(always)]
     fn inside(&mut self, mask: u64) -> bool {
+        if let Truths::Whole(root) = self.truths {
+            return root >> mask & 1 == 1;
+        }
         if mask == 0 {
             return self.core.outside.root() == Truth::Yes;
         }
@@ -196,9 +199,8 @@ impl<'a> Look<'a> {
             self.truths = self.room.table(self.core).map_or(Truths::State, Truths::Table);
         }
         let table = match self.truths {
-            Truths::Whole(root) => return root >> mask & 1 == 1,
             Truths::Table(table) => table,
-            Truths::State | Truths::Sought => return self.inside_by_state(mask),
+            Truths::Whole(_) | Truths::State | Truths::Sought => return self.inside_by_state(mask),
         };
         if let Some(told) = self.room.few.told(table, mask) {
             return told;

@@ -97,7 +97,8 @@ impl Leaf {
     /// ([`Solid::chord`]); counts as [`Leaf::crossings`] does, and tells the same.
     #[inline]
     pub(super) fn chord(&self, local: &Ray, scratch: &mut Scratch) -> Option<Chord> {
-        let chord = self.solid.chord(local, self.lean(scratch))?;
+        let taken = scratch.frame.map(|frame| frame.taken(&self.place.local_from_world.matrix3));
+        let chord = self.solid.chord(local, taken.as_ref().unwrap_or(&self.place.lean))?;
         scratch.counts.leaf_queries += 1;
         if chord.is_sound() {
             return Some(chord);

@@ -18,23 +18,25 @@ const IN_A_WORD: usize = 6;
 const TABLED: usize = 8;
 const WORDS: usize = 1 << (TABLED - IN_A_WORD);
 
-/// The leaves that a ray meets, as they came; places past the last hold [`NO_LEAF`].
+/// The leaves that a ray meets, as they came; places past the last hold anything.
 type Leaves = [u32; FEW];
-const NO_LEAF: u32 = u32::MAX;
 
 /// Truth of an object's root for states of some leaves, all others outside, as far as it has been asked for.
 #[derive(Clone, Copy, Debug)]
 struct Table {
     tree: u64,
     leaves: Leaves,
+    count: usize,
     /// Bit i: whether it is known for the leaves that have a bit in i, and what it is.
     known: [u64; WORDS],
     root: [u64; WORDS],
 }
 
 impl Table {
-    const fn of(tree: u64, leaves: Leaves) -> Table {
-        Table { tree, leaves, known: [0; WORDS], root: [0; WORDS] }
+    const NONE: Table = Table { tree: 0, leaves: [0; FEW], count: 0, known: [0; WORDS], root: [0; WORDS] };
+
+    fn is_of(&self, tree: u64, leaves: &[u32]) -> bool {
+        self.tree == tree && &self.leaves[..self.count] == leaves
     }
 }
 
@@ -54,7 +56,7 @@ impl All {
             return None;
         }
         let (leaves, count) =
-            (std::array::from_fn(|slot| matter().nth(slot).unwrap_or(NO_LEAF)), matter().count());
+            (std::array::from_fn(|slot| matter().nth(slot).unwrap_or_default()), matter().count());
         let root = truths(tree, outside, &leaves[..count], &mut outside.clone());
         Some(All { leaves, count, root })
     }
@@ -140,7 +142,7 @@ pub(super) struct Few {
 impl Default for Few {
     fn default() -> Few {
         Few {
-            leaves: [NO_LEAF; FEW],
+            leaves: [0; FEW],
             count: 0,
             hash: 0,
             shown: Vec::new(),
@@ -161,12 +163,12 @@ impl Room {
             return None;
         }
         if few.tables.is_empty() {
-            few.tables = vec![Table::of(0, [NO_LEAF; FEW]); TABLES];
+            few.tables = vec![Table::NONE; TABLES];
         }
         let which = (few.hash >> 56) as usize;
         let table = &mut few.tables[which];
-        if table.tree != core.id || table.leaves != few.leaves {
-            *table = Table::of(core.id, few.leaves);
+        if !table.is_of(core.id, &few.leaves[..few.count]) {
+            *table = Table { tree: core.id, leaves: few.leaves, count: few.count, ..Table::NONE };
         }
         Some(which)
     }
@@ -228,7 +230,7 @@ impl Few {
 
     #[inline]
     pub fn clear(&mut self, tree: u64) {
-        (self.leaves, self.count, self.hash) = ([NO_LEAF; FEW], 0, tree.wrapping_mul(MIX));
+        (self.count, self.hash) = (0, tree.wrapping_mul(MIX));
         (self.inside, self.hit_count) = (0, 0);
         self.shown.clear();
     }

@@ -87,28 +87,27 @@ impl Solid for Block {
         self.0
     }
 
-    fn chord(&self, ray: &Ray, lean: Lean) -> Option<Chord> {
-        let (mut enter, mut exit) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
-        for axis in 0..3 {
-            let (o, d) = (ray.origin[axis], ray.dir[axis]);
-            let (lo, hi) = (self.0.min[axis], self.0.max[axis]);
-            if d == 0.0 {
-                if !is_between(o, lo, hi, lean.along(axis)) {
+    fn chord(&self, ray: &Ray, lean: &Lean) -> Option<Chord> {
+        let (o, d) = (ray.origin, ray.dir);
+        let level = d.cmpeq(DVec3::ZERO);
+        let (low, high) = ((self.0.min - o) / d, (self.0.max - o) / d);
+        let ahead = d.cmpgt(DVec3::ZERO);
+        let (mut near, mut far) = (DVec3::select(ahead, low, high), DVec3::select(ahead, high, low));
+        if level.any() {
+            for axis in (0..3).filter(|axis| level.test(*axis)) {
+                if !is_between(o[axis], self.0.min[axis], self.0.max[axis], lean.along(axis)) {
                     return Some(Chord::NONE);
                 }
-                continue;
-            }
-            let (near, far) = if 0.0 < d { (lo, hi) } else { (hi, lo) };
-            let part = 2 * axis as u32 + u32::from(d < 0.0);
-            let (t0, t1) = ((near - o) / d, (far - o) / d);
-            if enter.0 < t0 {
-                enter = (t0, part);
-            }
-            if t1 < exit.0 {
-                exit = (t1, part ^ 1);
+                (near[axis], far[axis]) = (f64::NEG_INFINITY, f64::INFINITY);
             }
         }
-        Some(Chord::between(enter, exit))
+        let (mut enter, mut exit) = ((near.x, 0), (far.x, 0));
+        for axis in [1, 2] {
+            enter = if enter.0 < near[axis] { (near[axis], axis) } else { enter };
+            exit = if far[axis] < exit.0 { (far[axis], axis) } else { exit };
+        }
+        let face = |axis: usize, back: bool| 2 * axis as u32 + u32::from(back != (d[axis] < 0.0));
+        Some(Chord::between((enter.0, face(enter.1, false)), (exit.0, face(exit.1, true))))
     }
 
     fn moved(&self, by: f64) -> Result<Option<Arc<dyn Solid>>, &'static str> {

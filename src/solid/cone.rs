@@ -116,7 +116,7 @@ impl Solid for Cone {
     }
 
     /// The slab between the ends and the infinite cone, about the point nearest to the middle of the axis.
-    fn chord(&self, ray: &Ray, lean: Lean) -> Option<Chord> {
+    fn chord(&self, ray: &Ray, lean: &Lean) -> Option<Chord> {
         let Shaft { from, across_along, height, .. } = self.shaft;
         if height <= 0.0 || self.radii[0].max(self.radii[1]) <= 0.0 {
             return Some(Chord::NONE);
@@ -125,7 +125,7 @@ impl Solid for Cone {
         // Heights are taken from the ray's own origin: they decide flush faces, and are exact along the axes.
         let z = self.shaft.axis().dot(ray.origin - from);
         let (o, d) = (across_along * o, across_along * ray.dir);
-        let Some(ends) = self.shaft.between(z, d.z, lean) else { return Some(Chord::NONE) };
+        let Some(ends) = self.shaft.between(z, d.z, *lean) else { return Some(Chord::NONE) };
         let w = 0.5 * (self.radii[0] + self.radii[1]) + self.slope * o.z;
         let walls = self.nappe(o.truncate(), d.truncate(), w, self.slope * d.z);
         Some(walls.map_or(Chord::NONE, |walls| within(ends, walls.map(|t| shift + t))))

@@ -78,13 +78,13 @@ impl Solid for Cylinder {
     }
 
     /// The slab between the caps and the infinite cylinder. A ray along the axis meets the caps alone.
-    fn chord(&self, ray: &Ray, lean: Lean) -> Option<Chord> {
+    fn chord(&self, ray: &Ray, lean: &Lean) -> Option<Chord> {
         let Shaft { from, across_along, height, .. } = self.shaft;
         if self.radius <= 0.0 || height <= 0.0 {
             return Some(Chord::NONE);
         }
         let (o, d) = (across_along * (ray.origin - from), across_along * ray.dir);
-        let Some(ends) = self.shaft.between(o.z, d.z, lean) else { return Some(Chord::NONE) };
+        let Some(ends) = self.shaft.between(o.z, d.z, *lean) else { return Some(Chord::NONE) };
         let walls = self.within(o.truncate(), d.truncate());
         Some(walls.map_or(Chord::NONE, |walls| within(ends, walls)))
     }

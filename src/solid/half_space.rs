@@ -60,7 +60,7 @@ impl Solid for HalfSpace {
         Aabb::ALL
     }
 
-    fn chord(&self, ray: &Ray, lean: Lean) -> Option<Chord> {
+    fn chord(&self, ray: &Ray, lean: &Lean) -> Option<Chord> {
         let (height, slope) = (self.offset - self.normal.dot(ray.origin), self.normal.dot(ray.dir));
         let all = [f64::NEG_INFINITY, f64::INFINITY];
         let ends = if slope == 0.0 {

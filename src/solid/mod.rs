@@ -87,11 +87,11 @@ pub trait Solid: Send + Sync + Debug {
     ///
     /// A solid has this or [`Solid::chord`], which is then asked.
     fn crossings(&self, ray: &Ray, _: Interval, scratch: &mut Scratch, out: &mut Vec<Crossing>) -> Answer {
-        self.chord(ray, scratch.lean).unwrap_or(Chord::NONE).answer(out)
+        self.chord(ray, &scratch.lean).unwrap_or(Chord::NONE).answer(out)
     }
 
     /// The part of the ray's line that is inside, of a convex solid of one closed form ([`Cost::Closed`]); `None` of others.
-    fn chord(&self, _ray: &Ray, _lean: Lean) -> Option<Chord> {
+    fn chord(&self, _ray: &Ray, _lean: &Lean) -> Option<Chord> {
         None
     }
 

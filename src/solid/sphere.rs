@@ -56,9 +56,8 @@ impl Solid for Sphere {
         Aabb { min: center - reach, max: center + reach }
     }
 
-    /// |o + t d|^2 = r^2, for an ellipsoid in units of its radii. The discriminant is taken at the point nearest to the
-    /// centre, which keeps its digits however far the origin lies.
-    fn chord(&self, ray: &Ray, _: Lean) -> Option<Chord> {
+    /// |o + t d|^2 = r^2, for an ellipsoid in units of its radii.
+    fn chord(&self, ray: &Ray, _: &Lean) -> Option<Chord> {
         if self.radii.min_element() <= 0.0 {
             return Some(Chord::NONE);
         }
@@ -66,10 +65,8 @@ impl Solid for Sphere {
         if self.radii != DVec3::splat(r) {
             (o, d, r) = (o / self.radii, d / self.radii, 1.0);
         }
-        let a = d.length_squared();
-        let b = o.dot(d);
-        let foot = o - (b / a) * d;
-        let discriminant = -a * squares_apart(foot.length_squared(), r);
+        let (a, b) = (d.length_squared(), o.dot(d));
+        let discriminant = discriminant(o, d, [a, b], r);
         if discriminant.is_nan() || discriminant <= 0.0 {
             return Some(Chord::NONE);
         }
@@ -98,6 +95,20 @@ impl Solid for Sphere {
         // In two steps, as a square may have no room.
         (p / self.radii / self.radii).normalize()
     }
+}
+
+/// That of a t^2 + 2 b t + |o|^2 - r^2, with a = |d|^2 and b = o . d: a r^2 - |o x d|^2 (Lagrange), whose error is that of the
+/// line's distance from the centre, eps |o|, however far the origin lies. Near the rim, where the difference loses digits, and where
+/// squares have no room, it is a (r^2 - |foot|^2) with the point nearest to the centre.
+#[inline]
+fn discriminant(o: DVec3, d: DVec3, [a, b]: [f64; 2], r: f64) -> f64 {
+    let whole = a * (r * r);
+    let difference = whole - o.cross(d).length_squared();
+    if 0.125 * whole < difference.abs() {
+        return difference;
+    }
+    let foot = o - (b / a) * d;
+    -a * squares_apart(foot.length_squared(), r)
 }
 
 /// A length squared less r squared. Where they are near each other it is the product of sum and difference: that is exact

@@ -76,7 +76,7 @@ impl Solid for Line {
     }
 
     /// Where it is one interval.
-    fn chord(&self, _: &Ray, _: Lean) -> Option<Chord> {
+    fn chord(&self, _: &Ray, _: &Lean) -> Option<Chord> {
         let plain = !self.costly && self.piece.is_none() && self.shift == 0.0;
         let (ends, parts) = match (self.inside, &self.ends[..]) {
             (false, []) => (Chord::NONE.ends, [0; 2]),
