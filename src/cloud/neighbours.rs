@@ -1,7 +1,5 @@
 //! The nearest points and the points within a radius, in one order: by distance, then by index.
 
-use std::cmp::Ordering;
-
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -34,8 +32,10 @@ impl Near {
         (self.distance_squared, self.index) < (other.distance_squared, other.index)
     }
 
-    fn order(&self, other: &Near) -> Ordering {
-        self.distance_squared.total_cmp(&other.distance_squared).then(self.index.cmp(&other.index))
+    /// By distance, then by index, as one number: squares are no less than +0, and ordered as their bits are.
+    #[inline]
+    fn key(&self) -> u128 {
+        u128::from(self.distance_squared.to_bits()) << 32 | u128::from(self.index)
     }
 }
 
@@ -130,7 +130,7 @@ impl Neighbours {
             }
             node = self.tree.nodes[node].skip as usize;
         }
-        out.sort_unstable_by(Near::order);
+        out.sort_unstable_by_key(Near::key);
     }
 
     /// The `k` nearest other points of each point (fewer where there are not so many), in parallel.
@@ -221,7 +221,7 @@ impl Neighbours {
             }
         }
         if k < room.near.len() {
-            room.near.sort_unstable_by(Near::order);
+            room.near.sort_unstable_by_key(Near::key);
         } else {
             // There are others beyond what was looked at.
             self.nearest(x, k + 1, &mut room.near);

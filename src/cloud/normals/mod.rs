@@ -15,6 +15,7 @@ pub use estimate::{NORMAL_NEIGHBOURS, estimate, roughness};
 pub use improve::improve;
 pub use orient::{Spread, agreement, orient, outvoted};
 
+use super::spacing::spacing;
 use coarse::Coarse;
 
 /// Above this share of neighbours with opposed normals those of a file are improved by the winding number.
@@ -116,9 +117,10 @@ pub fn from_file(scene: Scene<'_>, given: Vec<DVec3>) -> Oriented {
         notes.push(format!("{missing} missing normals were estimated"));
     }
     let mut opposed = agreement(&normals, scene.table);
-    let areas = scene.areas(&normals);
     let doubtful = DOUBTFUL < opposed;
     let asked = if doubtful { (0..normals.len() as u32).collect() } else { outvoted(&normals, scene.table) };
+    // Where nothing is in doubt the area about each sample is near enough.
+    let areas = if asked.is_empty() { scene.squares() } else { scene.areas(&normals) };
     let flips = improve(scene, &areas, &mut normals, asked, ROUNDS);
     if doubtful {
         let share = 100.0 * opposed;
@@ -141,6 +143,11 @@ pub fn from_file(scene: Scene<'_>, given: Vec<DVec3>) -> Oriented {
 impl Scene<'_> {
     fn areas(&self, normals: &[DVec3]) -> Vec<f64> {
         super::areas_by(self.points, normals, self.widths, self.table)
+    }
+
+    /// Squares of the spacing of each sample.
+    fn squares(&self) -> Vec<f64> {
+        spacing(self.points, self.table).iter().map(|s| s * s).collect()
     }
 
     /// Whether the cloud is closed and its signed volume `sum a p.n / 3` is negative.

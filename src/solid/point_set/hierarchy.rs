@@ -106,11 +106,18 @@ pub struct Reach {
     pub range: Interval,
     /// Which sphere.
     pub sample: u32,
+    /// In a list in order, where it and all before it have ended.
+    pub ended: f64,
 }
 
 /// Puts trust spheres in the order in which a line meets them.
 pub(super) fn in_order(spheres: &mut [Reach]) {
     spheres.sort_unstable_by(|a, b| a.range.lo.total_cmp(&b.range.lo).then(a.sample.cmp(&b.sample)));
+    let mut ended = f64::NEG_INFINITY;
+    for reach in spheres {
+        ended = ended.max(reach.range.hi);
+        reach.ended = ended;
+    }
 }
 
 impl Hierarchy {
@@ -154,7 +161,8 @@ impl Hierarchy {
             let off = (p - line.at(middle)).length_squared();
             if off < h * h {
                 let half = (h * h - off).sqrt();
-                out.push(Reach { range: Interval::new(middle - half, middle + half), sample: i as u32 });
+                let range = Interval::new(middle - half, middle + half);
+                out.push(Reach { range, sample: i as u32, ended: range.hi });
             }
         }
     }

@@ -176,12 +176,14 @@ impl PointSet {
 }
 
 /// The sample that a point is nearest to, in that sample's own widths (ties by index). A function of the point
-/// alone where the list holds all spheres about it.
+/// alone where the list, in order, holds all spheres about it.
 fn nearest(samples: &Hierarchy, at: DVec3, s: f64, spheres: &[Reach]) -> usize {
     let ratio =
         |i: usize| (samples.points[i] - at).length_squared() / (samples.widths[i] * samples.widths[i]);
     let mut best = (f64::INFINITY, usize::MAX);
-    for reach in spheres.iter().filter(|r| r.range.contains(s)) {
+    let begun = spheres.partition_point(|r| r.range.lo <= s);
+    let about = spheres[..begun].iter().rev().take_while(|r| s <= r.ended);
+    for reach in about.filter(|r| s <= r.range.hi) {
         let candidate = (ratio(reach.sample as usize), reach.sample as usize);
         if candidate < best {
             best = candidate;
