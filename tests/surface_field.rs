@@ -15,7 +15,7 @@ struct Brute(Blocks, Neighbours);
 
 fn brute(points: &[DVec3], normals: &[DVec3], h: impl Fn(DVec3) -> f64) -> Brute {
     let widths: Vec<f64> = points.iter().map(|p| h(*p)).collect();
-    let blocks = Blocks::new(points, normals, &widths);
+    let blocks = Blocks::new(points, |i| normals[i], &widths);
     let all = Neighbours::everything(&blocks, DVec3::Z);
     Brute(blocks, all)
 }

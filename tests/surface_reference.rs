@@ -31,7 +31,7 @@ fn reference(set: &PointSet, options: &Options) -> Reference {
     let samples = set.samples();
     Reference {
         points: samples.points.clone(),
-        normals: samples.normals.clone(),
+        normals: samples.normals(),
         widths: samples.widths.clone(),
         gaussian: options.gaussian,
         same_way: !options.mixed,
@@ -210,7 +210,7 @@ fn f_itself_agrees_with_the_reference_for_every_plane_weight_and_degree() {
                     let usual = surface(&points, &normals, &options);
                     let samples = usual.samples();
                     let widths: Vec<f64> = samples.widths.iter().map(|h| wider * h).collect();
-                    let set = PointSet::new(&samples.points, &samples.normals, &widths, &options);
+                    let set = PointSet::new(&samples.points, &samples.normals(), &widths, &options);
                     let (worst, compared) = farthest(&set, &options, &normals, &points);
                     println!(
                         "{form:?}, gaussian {gaussian}, any way {mixed}, degree {degree}: {worst:.1e} at {compared}"

@@ -18,9 +18,9 @@ pub fn rows(rows: &mut Vec<Row>) {
     let (points, normals) = Truth::Torus.cloud(100_000);
     let usual = surface(&points, &normals, &Options::default());
     for (factor, degree) in [(0.69, 2), (0.69, 3), (1.0, 2), (1.0, 3), (1.0, 4)] {
-        let Hierarchy { points, normals, widths, .. } = usual.samples();
-        let widths: Vec<f64> = widths.iter().map(|h| factor * h).collect();
-        let samples = Hierarchy::new(points, normals, &widths);
+        let usual = usual.samples();
+        let widths: Vec<f64> = usual.widths.iter().map(|h| factor * h).collect();
+        let samples = Hierarchy::new(&usual.points, &usual.normals(), &widths);
         let [gathered, with] = [false, true].map(|again| seconds(&samples, degree, again));
         let name = format!("F and grad F, degree {degree}, {:.0} neighbours", neighbours(&samples));
         let asked = if factor < 1.0 && degree == 2 { "<= 1 with AVX-512, 1.5 with AVX2" } else { "" };
@@ -51,7 +51,7 @@ fn seconds(samples: &Hierarchy, degree: usize, gather: bool) -> f64 {
 }
 
 fn guess(samples: &Hierarchy, i: usize) -> Guess {
-    Guess { foot: samples.points[i], outward: samples.normals[i], width: samples.widths[i] }
+    Guess { foot: samples.points[i], outward: samples.normal(i), width: samples.widths[i] }
 }
 
 fn gathered(samples: &Hierarchy, i: usize) -> Neighbours {

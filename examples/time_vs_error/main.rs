@@ -13,6 +13,7 @@
 mod common;
 mod methods;
 mod plot;
+mod png;
 
 use std::fmt::Write;
 use std::time::Instant;

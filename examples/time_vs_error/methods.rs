@@ -185,7 +185,7 @@ impl Means {
             let w = (1.0 - d.length_squared() / (8.0 * samples.widths[i].powi(2))).max(0.0).powi(8);
             total += w;
             a += w * d;
-            n += w * samples.normals[i];
+            n += w * samples.normal(i);
         });
         Some((at + a / total, n.try_normalize()?)).filter(|_| 1e-6 < total)
     }
@@ -222,7 +222,7 @@ impl Method for Cylinder {
             let s = (samples.points[i] - line.origin).dot(line.dir);
             let off = (samples.points[i] - line.at(s)).length() / (self.radius * samples.widths[i]);
             // Discs that face the eye.
-            if off < 1.0 && samples.normals[i].dot(line.dir) < -0.05 {
+            if off < 1.0 && samples.normal(i).dot(line.dir) < -0.05 {
                 inside.push((s, i, off));
             }
         }
@@ -230,7 +230,7 @@ impl Method for Cylinder {
         let depth = 2.0 * self.radius * samples.widths[first];
         let (mut total, mut sum) = (0.0, 0.0);
         for (s, i, off) in inside.into_iter().filter(|x| x.0 <= nearest + depth) {
-            let n = samples.normals[i];
+            let n = samples.normal(i);
             let met = (samples.points[i] - line.origin).dot(n) / line.dir.dot(n);
             let w = 1.0 - off;
             // A disc seen from its edge is met nowhere near.

@@ -1,8 +1,10 @@
 //! One plot: each row a mark, error against warm time, both logarithmic.
 
+use std::path::Path;
+
 use plotters::prelude::*;
 
-use crate::Row;
+use crate::{Row, png};
 
 const METHODS: [(&str, RGBColor); 8] = [
     ("this, patches", RGBColor(200, 30, 40)),
@@ -20,26 +22,7 @@ pub fn write(rows: &[Row], noise: f64, path: &str) -> Result<(), Box<dyn std::er
     let mut svg = String::new();
     draw(rows, noise, &mut svg)?;
     std::fs::write(format!("{path}.svg"), &svg)?;
-    png(&svg, path)
-}
-
-/// Draws the same as pixels. A machine without fonts gets a picture without words.
-fn png(svg: &str, path: &str) -> Result<(), Box<dyn std::error::Error>> {
-    let mut options = resvg::usvg::Options::default();
-    let fonts = options.fontdb_mut();
-    fonts.load_system_fonts();
-    let family = |f: &resvg::usvg::fontdb::FaceInfo| f.families.first().map(|(name, _)| name.clone());
-    let plain = fonts.faces().filter_map(family).filter(|name| name.contains("Sans")).min();
-    if let Some(name) = plain.or_else(|| fonts.faces().filter_map(family).min()) {
-        fonts.set_sans_serif_family(name);
-    }
-    let tree = resvg::usvg::Tree::from_str(svg, &options)?;
-    let size = tree.size().to_int_size();
-    let mut image =
-        resvg::tiny_skia::Pixmap::new(size.width(), size.height()).ok_or("no room for the plot")?;
-    resvg::render(&tree, resvg::tiny_skia::Transform::identity(), &mut image.as_mut());
-    std::fs::write(format!("{path}.png"), image.encode_png()?)?;
-    Ok(())
+    png::write(&svg, Path::new(&format!("{path}.png")))
 }
 
 fn draw(rows: &[Row], noise: f64, svg: &mut String) -> Result<(), Box<dyn std::error::Error>> {

@@ -58,15 +58,19 @@ pub fn holes(samples: &Samples) -> Vec<Hole> {
 pub fn holes_by(samples: &Samples, tree: &Neighbours) -> Vec<Hole> {
     let may = tree.map(AROUND, |i, near| {
         let radius = disc_radius(samples, i as usize, near);
-        may_be_open(samples, i as usize, near, radius).then_some(radius)
+        may_be_open(samples, i as usize, near, radius)
     });
-    let touch = |(near, arcs): &mut (Vec<Near>, Vec<[f64; 2]>), (i, radius): (usize, &Option<f64>)| {
-        let radius = (*radius)?;
+    let touch = |(near, arcs): &mut (Vec<Near>, Vec<[f64; 2]>), i: u32| {
+        let i = i as usize;
+        tree.nearest(samples.points[i], AROUND + 1, near);
+        near.retain(|n| n.index as usize != i);
+        near.truncate(AROUND);
+        let radius = disc_radius(samples, i, near);
         tree.within(samples.points[i], 2.0 * radius, near);
         is_open(samples, i, near, radius, arcs).then_some((i as u32, radius))
     };
-    let open: Vec<Option<(u32, f64)>> =
-        may.par_iter().enumerate().map_init(Default::default, touch).collect();
+    let asked: Vec<u32> = (0..).zip(may).filter(|(_, may)| *may).map(|(i, _)| i).collect();
+    let open: Vec<Option<(u32, f64)>> = asked.into_par_iter().map_init(Default::default, touch).collect();
     let rim: Vec<(u32, f64)> = open.into_iter().flatten().collect();
     let labels = linked(samples, &rim).labels();
     let mut order: Vec<usize> = (0..rim.len()).collect();

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::tree::{Node, Tree};
 
 /// Points of a leaf: few enough to look at each, enough that boxes cost less than points.
-const LEAF: usize = 8;
+const LEAF: usize = 16;
 
 /// Points that look for their neighbours together: those of a node of the tree with at most so many. Of 16, 32, 64 the
 /// fastest.
@@ -17,6 +17,8 @@ const SPARE: f64 = 1.2;
 
 /// Crowds a thread takes at a time, at least.
 const CROWDS: usize = 32;
+/// Crowds whose answers are held before they are put in their places.
+const BATCH: usize = 4096;
 
 /// A point near a place.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -136,14 +138,13 @@ impl Neighbours {
     /// The `k` nearest other points of each point (fewer where there are not so many), in parallel.
     pub fn table(&self, k: usize) -> Table {
         let k = k.min(self.points.len().saturating_sub(1));
-        let rows = self.by_crowds(k, |_, near, ids| ids.extend(near.iter().map(|n| n.index)));
         let mut ids = vec![0; self.points.len() * k];
-        if 0 < k {
-            let in_tree = rows.iter().flat_map(|rows| rows.chunks_exact(k));
-            for (row, &i) in in_tree.zip(&self.tree.order) {
+        let row = |_, near: &[Near], row: &mut Vec<u32>| row.extend(near.iter().map(|n| n.index));
+        self.by_crowds(k, row, |owners, rows| {
+            for (&i, row) in owners.iter().zip(rows.chunks_exact(k.max(1))) {
                 ids[i as usize * k..][..k].copy_from_slice(row);
             }
-        }
+        });
         Table { k, ids }
     }
 
@@ -151,16 +152,21 @@ impl Neighbours {
     /// in parallel.
     pub fn map<T: Send + Copy + Default>(&self, k: usize, of: impl Fn(u32, &[Near]) -> T + Sync) -> Vec<T> {
         let k = k.min(self.points.len().saturating_sub(1));
-        let parts = self.by_crowds(k, |own, near, out| out.push(of(own, near)));
         let mut all = vec![T::default(); self.points.len()];
-        for (value, &i) in parts.into_iter().flatten().zip(&self.tree.order) {
-            all[i as usize] = value;
-        }
+        let one = |own, near: &[Near], out: &mut Vec<T>| out.push(of(own, near));
+        self.by_crowds(k, one, |owners, values| {
+            owners.iter().zip(values).for_each(|(&i, value)| all[i as usize] = value);
+        });
         all
     }
 
-    /// Goes through the crowds, each with a list of its own, in the order of the tree.
-    fn by_crowds<T: Send>(&self, k: usize, of: impl Fn(u32, &[Near], &mut Vec<T>) + Sync) -> Vec<Vec<T>> {
+    /// Goes through the crowds, each with a list of its own to append to, and gives that with the points of the crowd to `put`.
+    fn by_crowds<T: Send>(
+        &self,
+        k: usize,
+        of: impl Fn(u32, &[Near], &mut Vec<T>) + Sync,
+        mut put: impl FnMut(&[u32], Vec<T>),
+    ) {
         let visit = |room: &mut Room, crowd: &Node| {
             let mut out = Vec::new();
             self.look_around(crowd, k, room);
@@ -170,7 +176,13 @@ impl Neighbours {
             }
             out
         };
-        self.crowds().par_iter().with_min_len(CROWDS).map_init(Room::default, visit).collect()
+        for crowds in self.crowds().chunks(BATCH) {
+            let lists: Vec<Vec<T>> =
+                crowds.par_iter().with_min_len(CROWDS).map_init(Room::default, &visit).collect();
+            for (crowd, list) in crowds.iter().zip(lists) {
+                put(&self.tree.order[crowd.start as usize..crowd.end as usize], list);
+            }
+        }
     }
 
     /// The largest nodes with at most [`CROWD`] points, and leaves with more: points that are all equal.

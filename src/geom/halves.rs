@@ -64,7 +64,14 @@ impl<B: Copy + Send> Halves<B> {
     }
 
     fn whole<T: Send>(things: &mut [T], leaves: Leaves, how: &impl Halving<T, Bound = B>) -> Halves<B> {
-        Halves { nodes: if things.is_empty() { Vec::new() } else { build(things, 0, leaves, how) } }
+        if things.is_empty() {
+            return Halves { nodes: Vec::new() };
+        }
+        // As many as will be, each of which is written over: subtrees are built where they stand.
+        let node = Node { bound: how.bound(&things[..1]), start: 0, count: 0 };
+        let mut nodes = vec![node; nodes_over(things.len(), leaves)];
+        build(things, [0, 0], &mut nodes, leaves, how);
+        Halves { nodes }
     }
 
     /// The bound of everything.
@@ -120,38 +127,46 @@ impl Leaves {
     }
 }
 
-/// Nodes of a subtree; `first` is the place of its things in the whole order.
+/// How many nodes there are over so many things: of a binary tree twice as many as leaves, less one.
+fn nodes_over(count: usize, leaves: Leaves) -> usize {
+    if count <= leaves.most {
+        return 1;
+    }
+    if leaves.most < leaves.multiple {
+        // All leaves are full but the last.
+        return 2 * count.div_ceil(leaves.most) - 1;
+    }
+    let half = leaves.half(count);
+    1 + nodes_over(half, leaves) + nodes_over(count - half, leaves)
+}
+
+/// Fills in the nodes of a subtree; `first` and `at` are the places of its things and of its nodes among all.
 fn build<T: Send, H: Halving<T>>(
     things: &mut [T],
-    first: u32,
+    [first, at]: [u32; 2],
+    nodes: &mut [Node<H::Bound>],
     leaves: Leaves,
     how: &H,
-) -> Vec<Node<H::Bound>> {
-    let node = Node { bound: how.bound(things), start: first, count: things.len() as u32 };
+) {
+    let bound = how.bound(things);
     if things.len() <= leaves.most {
         how.settle(things);
-        return vec![node];
+        nodes[0] = Node { bound, start: first, count: things.len() as u32 };
+        return;
     }
-    let axis = how.axis(things, &node.bound);
+    let axis = how.axis(things, &bound);
     let half = leaves.half(things.len());
     things.select_nth_unstable_by(half, |a, b| how.order(axis, a, b));
     let (low, high) = things.split_at_mut(half);
-    let build_low = |low: &mut [T]| build(low, first, leaves, how);
-    let build_high = |high: &mut [T]| build(high, first + half as u32, leaves, how);
-    let (left, right) = if PARALLEL < low.len() {
-        join(|| build_low(low), || build_high(high))
+    let below = nodes_over(half, leaves);
+    let [left, right] = [[first, at + 1], [first + half as u32, at + 1 + below as u32]];
+    nodes[0] = Node { bound, start: right[1], count: 0 };
+    let (low_nodes, high_nodes) = nodes[1..].split_at_mut(below);
+    if PARALLEL < low.len() {
+        let build_low = || build(low, left, low_nodes, leaves, how);
+        join(build_low, || build(high, right, high_nodes, leaves, how));
     } else {
-        (build_low(low), build_high(high))
-    };
-    let second = 1 + left.len() as u32;
-    let mut nodes = Vec::with_capacity(1 + left.len() + right.len());
-    nodes.push(Node { start: second, count: 0, ..node });
-    nodes.extend(left.into_iter().map(|n| shifted(n, 1)));
-    nodes.extend(right.into_iter().map(|n| shifted(n, second)));
-    nodes
-}
-
-/// A node of a subtree that begins `by` places later; only inner nodes point at nodes.
-fn shifted<B>(node: Node<B>, by: u32) -> Node<B> {
-    if node.count == 0 { Node { start: node.start + by, ..node } } else { node }
+        build(low, left, low_nodes, leaves, how);
+        build(high, right, high_nodes, leaves, how);
+    }
 }

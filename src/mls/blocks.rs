@@ -35,7 +35,7 @@ const THIN: f64 = 1e-6;
 
 impl Blocks {
     /// Positions and widths are world lengths, normals outward and of unit length; one of each a sample.
-    pub fn new(points: &[DVec3], normals: &[DVec3], widths: &[f64]) -> Blocks {
+    pub fn new(points: &[DVec3], normal_of: impl Fn(usize) -> DVec3, widths: &[f64]) -> Blocks {
         let unit = power_of_two(median(widths.to_vec()));
         let per_unit = 1.0 / unit;
         let count = points.len();
@@ -47,7 +47,7 @@ impl Blocks {
                 std::array::from_fn(|i| if there(i) { at(i) } else { at(i) + ASIDE })
             };
             // Padding looks the last sample's way, so that it does not disturb the range of directions.
-            let normal = |axis: usize| std::array::from_fn(|i| normals[lane(i)][axis]);
+            let normal = |axis: usize| std::array::from_fn(|i| normal_of(lane(i))[axis]);
             let inverse = |i: usize| {
                 let k = if there(i) { unit / widths[lane(i)] } else { 1.0 / THIN };
                 k * k
@@ -75,6 +75,13 @@ impl Blocks {
     #[inline(always)]
     pub fn per_unit(&self) -> f64 {
         self.per_unit
+    }
+
+    /// The normal of a sample.
+    #[inline]
+    pub fn normal(&self, sample: usize) -> DVec3 {
+        let (block, lane) = (&self.blocks[sample / LANES], sample % LANES);
+        DVec3::new(block.nx[lane], block.ny[lane], block.nz[lane])
     }
 
     /// How many blocks.

@@ -40,7 +40,7 @@ impl PointSet {
         let (mut total, mut sum) = (0.0, DVec3::ZERO);
         self.samples.visit(q, 0.0, weight.support().sqrt(), |i| {
             let h = self.samples.widths[i];
-            let facing = self.samples.normals[i].dot(outward);
+            let facing = self.samples.normal(i).dot(outward);
             let factor = if self.mixed { AnyWay::at(facing) } else { SameWay::at(facing) };
             let w = weight.at((self.samples.points[i] - q).length_squared() / (h * h)) * factor;
             total += w;

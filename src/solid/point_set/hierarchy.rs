@@ -17,8 +17,6 @@ use crate::num::lanes::LANES;
 pub struct Hierarchy {
     /// Positions.
     pub points: Vec<DVec3>,
-    /// Outward unit normals.
-    pub normals: Vec<DVec3>,
     /// Widths h_i, which are also the radii of the trust spheres.
     pub widths: Vec<f64>,
     blocks: Blocks,
@@ -127,10 +125,20 @@ impl Hierarchy {
         let nodes = Halves::full(&mut order, LANES, LANES << (LEVELS - 1), &Samples { points, widths });
         let pick = |i: &u32| *i as usize;
         let points: Vec<DVec3> = order.iter().map(|i| points[pick(i)]).collect();
-        let normals: Vec<DVec3> = order.iter().map(|i| normals[pick(i)]).collect();
         let widths: Vec<f64> = order.iter().map(|i| widths[pick(i)]).collect();
-        let blocks = Blocks::new(&points, &normals, &widths);
-        Hierarchy { points, normals, widths, blocks, original: order, nodes }
+        let blocks = Blocks::new(&points, |i| normals[pick(&order[i])], &widths);
+        Hierarchy { points, widths, blocks, original: order, nodes }
+    }
+
+    /// The outward unit normal of a sample.
+    #[inline]
+    pub fn normal(&self, sample: usize) -> DVec3 {
+        self.blocks.normal(sample)
+    }
+
+    /// All of them.
+    pub fn normals(&self) -> Vec<DVec3> {
+        (0..self.points.len()).map(|i| self.normal(i)).collect()
     }
 
     /// A box around all trust spheres.

@@ -145,7 +145,7 @@ impl PointSet {
         let cells = cells_at(&line.bands, &line.cells, s);
         if crossing.part == part::WALL {
             // A wall stands where definitions disagree: the nearest sample tells best how the surface lies.
-            let normal = self.nearest_of(at, cells).map_or(facing, |nearest| self.samples.normals[nearest]);
+            let normal = self.nearest_of(at, cells).map_or(facing, |nearest| self.samples.normal(nearest));
             return if 0.0 < normal.dot(facing) { normal } else { facing };
         }
         let before = line.room.work;

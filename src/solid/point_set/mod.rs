@@ -187,10 +187,11 @@ impl PointSet {
     /// The winding number of the samples, built when first asked.
     fn winding(&self) -> &Winding {
         self.winding.get_or_init(|| {
-            let Hierarchy { points, normals, widths, .. } = &*self.samples;
+            let Hierarchy { points, widths, .. } = &*self.samples;
+            let normals = self.samples.normals();
             let reach: Vec<f64> = widths.iter().map(|h| AREA_REACH * h).collect();
-            let areas = areas(points, normals, &reach, &Neighbours::new(points));
-            Winding::new(points, normals, &areas, CAP_OPENING)
+            let areas = areas(points, &normals, &reach, &Neighbours::new(points));
+            Winding::new(points, &normals, &areas, CAP_OPENING)
         })
     }
 

@@ -135,7 +135,7 @@ impl PointSet {
         room: &mut Room,
     ) -> Result<Sample, Stray> {
         // The foot on the plane of the nearest sample: a function of the point alone.
-        let (p, outward) = (self.samples.points[sample], self.samples.normals[sample]);
+        let (p, outward) = (self.samples.points[sample], self.samples.normal(sample));
         let width = self.samples.widths[sample];
         let guess = Guess { foot: at - outward * outward.dot(at - p), outward, width };
         let answer = self.gathered(evaluator, at, &guess, room);

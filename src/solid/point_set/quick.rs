@@ -163,7 +163,7 @@ impl PointSet {
     /// Whether a place is inside, by the sample next to it, where that is plain.
     pub(super) fn side(&self, at: DVec3, cells: &[CellOn]) -> Option<bool> {
         let sample = self.nearest_of(at, cells)?;
-        let height = (at - self.samples.points[sample]).dot(self.samples.normals[sample]);
+        let height = (at - self.samples.points[sample]).dot(self.samples.normal(sample));
         (CLEAR * self.samples.widths[sample] < height.abs()).then_some(height < 0.0)
     }
 

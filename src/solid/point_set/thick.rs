@@ -124,7 +124,7 @@ impl Thick {
         }
         if NEAR_RIM < self.drifts[first] {
             let off = p - samples.points[first];
-            let lateral = (off - off.dot(samples.normals[first]) * samples.normals[first]).length() / width;
+            let lateral = off.reject_from_normalized(samples.normal(first)).length() / width;
             if PAST < lateral {
                 return outside((OUTWARD * (lateral - EDGE_WITHIN) * width).max(away - self.widest));
             }

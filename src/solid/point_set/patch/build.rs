@@ -72,7 +72,7 @@ pub(super) fn guide(set: &PointSet, of: Range<usize>) -> Option<Patch> {
 fn placed(set: &PointSet, frame: &Frame, i: u32) -> Option<Placed> {
     let [e1, e2, n] = frame.axes;
     let [a, b] = frame.half;
-    let (p, m) = (set.samples.points[i as usize] - frame.origin, set.samples.normals[i as usize]);
+    let (p, m) = (set.samples.points[i as usize] - frame.origin, set.samples.normal(i as usize));
     let (x, y) = (p.dot(e1) / a, p.dot(e2) / b);
     let up = m.dot(n);
     let over = x.abs() <= BESIDE && y.abs() <= BESIDE;
@@ -116,8 +116,8 @@ fn made(frame: Frame, c: [f64; COEFFICIENTS], degree: usize, error: f64, lean: f
 fn frame(set: &PointSet, range: &Range<usize>, margin: f64) -> Option<Frame> {
     let samples = &set.samples;
     let count = range.len() as f64;
-    let mean = |of: &[DVec3]| of[range.clone()].iter().sum::<DVec3>() / count;
-    let (middle, normal) = (mean(&samples.points), mean(&samples.normals));
+    let middle = samples.points[range.clone()].iter().sum::<DVec3>() / count;
+    let normal = range.clone().map(|i| samples.normal(i)).sum::<DVec3>() / count;
     let n = normal.try_normalize()?;
     let width = samples.widths[range.clone()].iter().copied().fold(f64::INFINITY, f64::min);
     let widest = samples.widths[range.clone()].iter().copied().fold(0.0, f64::max);
@@ -162,7 +162,7 @@ fn sheet(set: &PointSet, frame: &Frame) -> Option<Vec<u32>> {
         if REACH * h < beside.hypot((z.abs() - h).max(0.0)) {
             return;
         }
-        let facing = samples.normals[i].dot(*n);
+        let facing = samples.normal(i).dot(*n);
         let along = (d - z * n).length();
         let same = FACING <= facing && z.abs() <= SLOPE * along + THICK * h;
         one &= same || (facing <= -FACING && APART * width <= z.abs());
