@@ -231,6 +231,69 @@ finds! { copies_of_a_cutter_need_not_all_cut: "draw box(size: 2) - sphere(r: 0.5
 
 finds! { a_small_intersection_is_seen: "draw sphere(r: 1) & sphere(r: 1, at: [1.999, 0, 0])\n" }
 
+finds! { a_lens_of_a_ten_millionth_is_seen: "draw (sphere(r: 1) & sphere(r: 1, at: [1.9999999, 0, 0])).rotate_z(33deg).rotate_x(20deg)\n" }
+
+finds! { the_corner_that_two_turned_boxes_share_is_seen: "draw (box(size: 1) & box(size: 1, at: [0.9999, 0.9999, 0.9999])).rotate_z(33deg).rotate_x(20deg)\n" }
+
+finds! { a_cutter_that_takes_a_sliver_cuts: "draw sphere(r: 1) - sphere(r: 1, at: [1.99999, 0, 0])\ndraw (box(size: 2).rotate_z(20deg) - sphere(r: 1, at: [0, 0, 1.99999])).move([9, 0, 0])\n" }
+
+finds! {
+    of_cutters_that_cut_the_same_one_is_needed: "let c = box(size: 1)\ndraw box(size: 2) - c - c\n",
+    r#"
+warning[W0121]: faces of copies of `c` coincide
+ --> scene.pss:1:9
+  |
+1 | let c = box(size: 1)
+  |         ^^^^^^^^^^^^ these
+  = help: copies that touch are one solid; a copy that shall cut through another must stand out of it
+
+warning[W0122]: this cutter cuts nothing
+ --> scene.pss:2:25
+  |
+2 | draw box(size: 2) - c - c
+  |      ------------       ^ takes nothing away
+  |      |
+  |      from this
+  = help: move it to where it meets what it shall cut, or leave it out
+"#
+}
+
+finds! {
+    of_equal_cutters_in_a_list_the_first_stays: "draw difference(box(size: 4), [sphere(r: 1), sphere(r: 1)])\n",
+    r#"
+warning[W0121]: faces of `sphere` and `sphere` coincide
+ --> scene.pss:1:46
+  |
+1 | draw difference(box(size: 4), [sphere(r: 1), sphere(r: 1)])
+  |                                ------------  ^^^^^^^^^^^^ this one
+  |                                |
+  |                                and this one
+  = help: nothing is wrong with that; if a cut shall go through, let the cutter stand out of what it cuts
+
+warning[W0122]: this cutter cuts nothing
+ --> scene.pss:1:46
+  |
+1 | draw difference(box(size: 4), [sphere(r: 1), sphere(r: 1)])
+  |                 ------------ from this       ^^^^^^^^^^^^ takes nothing away
+  = help: move it to where it meets what it shall cut, or leave it out
+"#
+}
+
+finds! {
+    solids_drawn_a_ten_thousandth_into_each_other_overlap: "draw sphere(r: 1)\ndraw sphere(r: 1, at: [1.9999, 0, 0])\n",
+    r#"
+warning[W0126]: the insides of two solids drawn overlap
+ --> scene.pss:2:6
+  |
+1 | draw sphere(r: 1)
+  |      ------------ reaches into this one
+2 | draw sphere(r: 1, at: [1.9999, 0, 0])
+  |      ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ this one
+  = help: move one of them, or draw them as one: `draw a | b`
+  = note: by about 0.00010, around [0.99995, 0.00000, 0.00000]
+"#
+}
+
 finds! { a_thin_wall_is_kept: "draw box(size: 2) - box(size: 1.999999)\n" }
 
 finds! { a_thin_sheet_is_kept: "draw box([0, 0, 0], [1, 1, 1e-9])\n" }
@@ -242,6 +305,18 @@ finds! { half_spaces_alone_are_fine: "draw half_space(z < 3) - half_space(x > 2)
 finds! { complements_in_complements_are_told_apart: "draw box(size: 2) - !sphere(r: 1.2)\n" }
 
 finds! { a_formula_that_holds_somewhere_is_fine: "draw implicit(x**2 + y**2 + z**2 <= 0.04, inside: box(size: 1))\n" }
+
+/// Too many for each to have its own share of the lines: those that none met are looked at alone.
+#[test]
+fn thousands_of_small_balls_are_all_something() {
+    let ball = |i: u32| {
+        let at = |k: u32| f64::from(k * 7919 % 199) - 99.0;
+        format!("sphere(r: 0.01, at: [{}, {}, {}])", at(i), at(i / 7 + 3), at(i / 49 + 11 * i))
+    };
+    let balls: Vec<String> = (0..3000).map(ball).collect();
+    let found = findings(&format!("draw union([{}])\n", balls.join(", ")));
+    assert!(!found.contains("W0127"), "{found}");
+}
 
 #[test]
 fn findings_of_one_kind_are_counted_past_twenty() {

@@ -55,6 +55,32 @@ fn answers_in_pieces_change_no_bit() {
     }
 }
 
+/// A leaf that is used a thousand times is asked once a ray, and an exclusion of it an even number of times is nothing.
+#[test]
+fn a_leaf_used_a_thousand_times_is_asked_once() {
+    let mut scratch = Scratch::default();
+    let (leaf, line) = placed(Line::new(&[1.0, 3.0]), 4);
+    let all: Vec<Expr> = (0..1000).map(Expr::Leaf).collect();
+    let one = ends(&{
+        let mut spans = Spans::new();
+        let object = Object::new(vec![leaf.clone()], &Expr::Leaf(0));
+        object.spans(&axis(), Interval::ALL, &mut scratch, &mut spans);
+        spans
+    });
+    for (expr, want) in [
+        (Expr::Or(all.clone()), &one[..]),
+        (Expr::And(all.clone()), &one[..]),
+        (Expr::Xor(all[..999].to_vec()), &one[..]),
+        (Expr::Xor(all.clone()), &[][..]),
+    ] {
+        let object = Object::new(vec![leaf.clone(); 1000], &expr);
+        let (before, mut spans) = (line.asked(), Spans::new());
+        object.spans(&axis(), Interval::ALL, &mut scratch, &mut spans);
+        assert_eq!(ends(&spans), want);
+        assert_eq!(line.asked() - before, 1);
+    }
+}
+
 /// A cutter outside the base's extent along the ray is never asked; one inside it is.
 #[test]
 fn a_cutter_is_asked_only_where_the_base_lives() {

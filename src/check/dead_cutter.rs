@@ -19,6 +19,12 @@ fn find(evidence: &Evidence) -> Vec<Diagnostic> {
         let idle = cut.cutters.iter().filter(|c| !evidence.seen.cutting.contains(&c.at));
         dead.extend(idle.map(|c| (c.at, base)));
     }
+    // Where several cut the same, each could be left out, but not all: the first stays.
+    for alike in &evidence.seen.alike {
+        if alike.iter().all(|at| dead.contains_key(at)) {
+            dead.remove(&alike[0]);
+        }
+    }
     let warn = |(at, base)| {
         let warning =
             Diagnostic::warning(FINDING.code, "this cutter cuts nothing").at(at, "takes nothing away");

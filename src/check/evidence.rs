@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::closer;
 use super::lines::{self, Event, Line};
 use super::logic::{Logic, State};
 use crate::csg::{Leaf, Object};
@@ -27,8 +28,8 @@ pub struct Evidence<'a> {
 /// may come to many solids.
 #[derive(Debug, Default)]
 pub(super) struct Seen {
-    /// Leaves that lines were aimed at.
-    pub aimed: BTreeSet<u32>,
+    /// Leaves that are nothing ([`closer::nothing`]).
+    pub nothing: BTreeSet<u32>,
     /// Leaves that a line crossed, with some thickness.
     pub crossed: BTreeSet<u32>,
     /// Solids drawn that a line was inside.
@@ -47,11 +48,14 @@ pub(super) struct Seen {
     pub left: BTreeSet<Span>,
     /// Cutters that did not hold somewhere in their base.
     pub uncovering: BTreeSet<Span>,
+    /// Cutters that cut the same: what their bases lost where none of them was needed, as the others cut it too. In the order
+    /// of the text, at most [`ALIKE`] each.
+    pub alike: BTreeSet<Vec<Span>>,
 }
 
 impl Seen {
     fn add(mut self, o: Seen) -> Seen {
-        self.aimed.extend(o.aimed);
+        self.nothing.extend(o.nothing);
         self.crossed.extend(o.crossed);
         self.parts.extend(o.parts);
         self.shared.extend(o.shared);
@@ -64,9 +68,13 @@ impl Seen {
         self.bases.extend(o.bases);
         self.left.extend(o.left);
         self.uncovering.extend(o.uncovering);
+        self.alike.extend(o.alike);
         self
     }
 }
+
+/// Of more cutters at one place it is not kept which.
+const ALIKE: usize = 6;
 
 /// Lines that one task looks at.
 const BATCH: usize = 64;
@@ -81,8 +89,10 @@ impl<'a> Evidence<'a> {
             batch.iter().for_each(|line| witness.look(line));
             witness.finish()
         };
-        let seen: Vec<Seen> = lines.par_chunks(BATCH).map(look).collect();
-        let seen = seen.into_iter().fold(Seen::default(), Seen::add);
+        let all = |lines: &[Line]| -> Vec<Seen> { lines.par_chunks(BATCH).map(look).collect() };
+        let mut seen = all(&lines).into_iter().fold(Seen::default(), Seen::add);
+        seen = all(&closer::lines(object, outline, logic.len(), &seen)).into_iter().fold(seen, Seen::add);
+        seen.nothing.extend(closer::nothing(object, &seen));
         Evidence { leaves: object.leaves(), outline, seen }
     }
 }
@@ -141,8 +151,7 @@ impl<'a> Witness<'a> {
     }
 
     fn look(&mut self, line: &Line) {
-        let Line { ray, aim } = line;
-        self.seen.aimed.extend(*aim);
+        let Line { ray } = line;
         lines::ask(self.object, ray, &mut self.inside, &mut self.events, &mut self.scratch);
         let events = std::mem::take(&mut self.events);
         self.faces(&events, ray);
@@ -221,6 +230,28 @@ impl<'a> Witness<'a> {
                 *uncovering |= in_base && !held(node);
             }
         }
+        self.seen.alike.extend(self.alike());
+    }
+}
+
+impl Witness<'_> {
+    /// The cutters that hold here, where each of them could be left out, and one of them cuts its base.
+    fn alike(&self) -> Option<Vec<Span>> {
+        let State { holds, tells, .. } = &self.state;
+        let (mut all, mut cuts) = (Vec::new(), false);
+        for (nodes, cut) in self.logic.cuts.iter().zip(&self.outline.cuts) {
+            let in_base = nodes.base.is_none_or(|n| holds[n as usize]);
+            for (node, piece) in nodes.cutters.iter().zip(&cut.cutters) {
+                let Some(n) = node.filter(|n| holds[*n as usize]) else { continue };
+                if tells[n as usize] || all.len() == ALIKE {
+                    return None;
+                }
+                all.push(piece.at);
+                cuts |= in_base;
+            }
+        }
+        all.sort_unstable();
+        (cuts && 1 < all.len()).then_some(all)
     }
 }
 

@@ -15,13 +15,12 @@ use crate::solid::{Crossing, Scratch};
 /// Lines through the whole, each leaf, each solid drawn, each meeting of cutter and base.
 const THROUGH: [u64; 4] = [2000, 24, 64, 48];
 /// Lines times nodes of the expression that are looked at; beyond, only every so many-th line is cast.
-const WORK: u64 = 30_000_000;
+pub(super) const WORK: u64 = 30_000_000;
 
-/// A line and the leaf it is aimed at.
+/// A line to look along.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
     pub ray: Ray,
-    pub aim: Option<u32>,
 }
 
 /// All test lines of an object; `nodes` is the size of its expression.
@@ -38,22 +37,22 @@ pub(super) fn lines(object: &Object, outline: &Outline, nodes: usize) -> Vec<Lin
             2.0 * reach
         });
     }
-    let mut targets: Vec<(Aabb, u64, Option<u32>)> = vec![(whole, THROUGH[0], None)];
-    targets.extend(leaves.iter().zip(0..).map(|(l, i)| (l.bounds, THROUGH[1], Some(i))));
-    targets.extend(outline.parts.iter().map(|p| (p.bounds, THROUGH[2], None)));
+    let mut targets: Vec<(Aabb, u64)> = vec![(whole, THROUGH[0])];
+    targets.extend(leaves.iter().map(|l| (l.bounds, THROUGH[1])));
+    targets.extend(outline.parts.iter().map(|p| (p.bounds, THROUGH[2])));
     let extent = |piece: &Piece| {
         let own = &leaves[piece.leaves.start as usize..piece.leaves.end as usize];
         own.iter().fold(Aabb::EMPTY, |sum, l| sum.union(l.bounds))
     };
     for cut in &outline.cuts {
         let base = cut.base.as_ref().map_or(Aabb::ALL, extent);
-        targets.extend(cut.cutters.iter().map(|c| (base.intersection(extent(c)), THROUGH[3], None)));
+        targets.extend(cut.cutters.iter().map(|c| (base.intersection(extent(c)), THROUGH[3])));
     }
     let all: u64 = targets.iter().map(|t| t.1).sum();
     let every = (all * nodes.max(1) as u64).div_ceil(WORK).max(1);
     let mut lines = Vec::new();
     let mut number = 0;
-    for (target, count, aim) in targets {
+    for (target, count) in targets {
         let target = target.intersection(whole);
         if !target.is_finite() || target.is_empty() {
             continue;
@@ -61,7 +60,7 @@ pub(super) fn lines(object: &Object, outline: &Outline, nodes: usize) -> Vec<Lin
         for _ in 0..count {
             number += 1;
             if number % every == 0 {
-                lines.push(Line { ray: through(&target, whole.diagonal(), number), aim });
+                lines.push(Line { ray: through(&target, whole.diagonal(), number) });
             }
         }
     }
@@ -69,7 +68,8 @@ pub(super) fn lines(object: &Object, outline: &Outline, nodes: usize) -> Vec<Lin
     lines
 }
 
-fn through(target: &Aabb, length: f64, number: u64) -> Ray {
+/// A line through a random point of a box.
+pub(super) fn through(target: &Aabb, length: f64, number: u64) -> Ray {
     let mut stream = Stream::new(number);
     let share = DVec3::new(stream.unit(), stream.unit(), stream.unit());
     Ray::new(target.min + share * target.size(), length * stream.direction())

@@ -5,6 +5,7 @@
 //! finding is one file and one line of [`FINDINGS`]. What test lines do not see is not told: a finding that says "no
 //! line" is as good as the lines are many, all others are certain.
 
+mod closer;
 mod coincident;
 mod dead_cutter;
 mod empty;

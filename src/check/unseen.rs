@@ -1,4 +1,4 @@
-//! Shapes that are nothing: no line aimed at their own bounds is ever inside them.
+//! Shapes that are nothing: of thousands of lines through their own bounds none is ever inside them.
 
 use std::collections::BTreeMap;
 
@@ -14,8 +14,7 @@ fn find(evidence: &Evidence) -> Vec<Diagnostic> {
     let mut unseen = BTreeMap::new();
     for (at, leaf) in evidence.outline.calls.iter().zip(0..) {
         // A shape too thin to tell has a finding of its own.
-        let told = seen.films.contains(&leaf) || !seen.aimed.contains(&leaf);
-        let met = told || seen.crossed.contains(&leaf);
+        let met = seen.films.contains(&leaf) || !seen.nothing.contains(&leaf);
         let known = unseen.entry(*at).or_insert((false, leaf));
         known.0 |= met;
     }
@@ -24,7 +23,11 @@ fn find(evidence: &Evidence) -> Vec<Diagnostic> {
         let name = &evidence.leaves[leaf as usize].name;
         Diagnostic::warning(FINDING.code, format!("`{name}` is nothing: no test line is inside it"))
             .at(at, "never met")
-            .help("look at its sizes; a formula may hold nowhere in its bounds")
+            .help(if &**name == "implicit" {
+                "look at its sizes; a formula may hold nowhere in its bounds"
+            } else {
+                "look at its sizes"
+            })
     };
     unseen.map(warn).collect()
 }

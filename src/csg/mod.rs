@@ -15,6 +15,7 @@ mod owner;
 mod queue;
 mod reach;
 mod room;
+mod same;
 mod slots;
 mod spans;
 mod stem;

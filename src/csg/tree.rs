@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::expr::Expr;
 use super::leaf::Leaf;
+use super::same::first_of_same;
 use super::stem::Stems;
 
 /// How a node combines its children.
@@ -115,9 +116,11 @@ impl Default for Tree {
 }
 
 impl Tree {
-    /// Builds the counters of an expression. The root is always a node.
+    /// Builds the counters of an expression. The root is always a node. Of leaves that are the same only the first counts
+    /// anywhere.
     pub fn new(leaves: Vec<Leaf>, expr: &Expr) -> Tree {
-        let draft = Draft::new(expr);
+        let same = first_of_same(&leaves);
+        let draft = Draft::new(expr, &same);
         let order = draft.order();
         let mut place = vec![0; order.len()];
         order.iter().enumerate().for_each(|(i, n)| place[*n as usize] = i as u32);
@@ -228,12 +231,15 @@ struct Draft<'e> {
     shared: HashMap<*const Expr, (u32, bool)>,
     /// Children still to be placed: the expression, whether it is complemented, the node above.
     open: Vec<(&'e Expr, bool, u32)>,
+    /// For each leaf the first that is the same.
+    same: &'e [u32],
 }
 
 impl<'e> Draft<'e> {
-    fn new(expr: &'e Expr) -> Draft<'e> {
+    fn new(expr: &'e Expr, same: &'e [u32]) -> Draft<'e> {
         let root = Sketch { kind: Kind::Or, children: Vec::new() };
-        let mut draft = Draft { nodes: vec![root], shared: HashMap::new(), open: vec![(expr, false, 0)] };
+        let (nodes, open) = (vec![root], vec![(expr, false, 0)]);
+        let mut draft = Draft { nodes, shared: HashMap::new(), open, same };
         while let Some((expr, not, above)) = draft.open.pop() {
             draft.place(expr, not, above);
         }
@@ -247,7 +253,9 @@ impl<'e> Draft<'e> {
 
     fn place(&mut self, expr: &'e Expr, not: bool, above: u32) {
         match expr {
-            Expr::Leaf(i) => self.nodes[above as usize].children.push((Child::Leaf(*i), not)),
+            Expr::Leaf(i) => {
+                self.nodes[above as usize].children.push((Child::Leaf(self.same[*i as usize]), not));
+            }
             Expr::Not(inner) => self.open.push((inner, !not, above)),
             Expr::Shared(inner) if 1 < Arc::strong_count(inner) => self.place_shared(inner, not, above),
             Expr::Shared(inner) => self.open.push((inner, not, above)),
