@@ -7,7 +7,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::evidence::Seen;
-use super::lines::{Line, WORK, through};
+use super::lines::{WORK, through};
 use crate::csg::{Expr, Leaf, Object, Scratch, Spans};
 use crate::geom::{Aabb, Interval, Ray};
 use crate::prepare::{Outline, Piece};
@@ -52,7 +52,7 @@ fn is_met(leaf: &Leaf, scratch: &mut Scratch) -> bool {
 /// Lines at what seems to be nothing, to cut nothing, or to keep clear of something else: between the middles of the shapes that
 /// may meet, where they meet first and leave each other last, and about the middle of where their boxes do. `nodes` is the size
 /// of the object's expression.
-pub(super) fn lines(object: &Object, outline: &Outline, nodes: usize, seen: &Seen) -> Vec<Line> {
+pub(super) fn lines(object: &Object, outline: &Outline, nodes: usize, seen: &Seen) -> Vec<Ray> {
     let leaves = object.leaves();
     let boxes = |range: &Range<u32>| -> Vec<Aabb> {
         let own = leaves[range.start as usize..range.end as usize].iter().map(|leaf| leaf.bounds);
@@ -79,7 +79,7 @@ pub(super) fn lines(object: &Object, outline: &Outline, nodes: usize, seen: &See
     pairs.truncate(PLACES.min(most / FEWEST));
     let each = most / pairs.len().max(1);
     let rays = pairs.iter().flat_map(|[a, b]| between(&boxes(a), &boxes(b)).into_iter().take(each));
-    rays.filter(Ray::is_valid).map(|ray| Line { ray }).collect()
+    rays.filter(Ray::is_valid).collect()
 }
 
 /// Lines between boxes of two sides.

@@ -6,7 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::closer;
-use super::lines::{self, Event, Line};
+use super::lines::{self, Event};
 use super::logic::{Logic, State};
 use crate::csg::{Leaf, Object};
 use crate::geom::{Aabb, Ray, tolerance};
@@ -84,12 +84,12 @@ impl<'a> Evidence<'a> {
     pub fn gather(object: &'a Object, outline: &'a Outline) -> Evidence<'a> {
         let logic = Logic::new(outline);
         let lines = lines::lines(object, outline, logic.len());
-        let look = |batch: &[Line]| {
+        let look = |batch: &[Ray]| {
             let mut witness = Witness::new(object, outline, &logic);
             batch.iter().for_each(|line| witness.look(line));
             witness.finish()
         };
-        let all = |lines: &[Line]| -> Vec<Seen> { lines.par_chunks(BATCH).map(look).collect() };
+        let all = |lines: &[Ray]| -> Vec<Seen> { lines.par_chunks(BATCH).map(look).collect() };
         let mut seen = all(&lines).into_iter().fold(Seen::default(), Seen::add);
         seen = all(&closer::lines(object, outline, logic.len(), &seen)).into_iter().fold(seen, Seen::add);
         seen.nothing.extend(closer::nothing(object, &seen));
@@ -150,8 +150,7 @@ impl<'a> Witness<'a> {
         seen
     }
 
-    fn look(&mut self, line: &Line) {
-        let Line { ray } = line;
+    fn look(&mut self, ray: &Ray) {
         lines::ask(self.object, ray, &mut self.inside, &mut self.events, &mut self.scratch);
         let events = std::mem::take(&mut self.events);
         self.faces(&events, ray);

@@ -17,14 +17,8 @@ const THROUGH: [u64; 4] = [2000, 24, 64, 48];
 /// Lines times nodes of the expression that are looked at; beyond, only every so many-th line is cast.
 pub(super) const WORK: u64 = 30_000_000;
 
-/// A line to look along.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Line {
-    pub ray: Ray,
-}
-
 /// All test lines of an object; `nodes` is the size of its expression.
-pub(super) fn lines(object: &Object, outline: &Outline, nodes: usize) -> Vec<Line> {
+pub(super) fn lines(object: &Object, outline: &Outline, nodes: usize) -> Vec<Ray> {
     let leaves = object.leaves();
     let finite = leaves.iter().map(|l| l.bounds).filter(|b| b.is_finite() && !b.is_empty());
     let mut whole = finite.fold(Aabb::EMPTY, Aabb::union);
@@ -60,11 +54,11 @@ pub(super) fn lines(object: &Object, outline: &Outline, nodes: usize) -> Vec<Lin
         for _ in 0..count {
             number += 1;
             if number % every == 0 {
-                lines.push(Line { ray: through(&target, whole.diagonal(), number) });
+                lines.push(through(&target, whole.diagonal(), number));
             }
         }
     }
-    lines.retain(|line| line.ray.is_valid());
+    lines.retain(Ray::is_valid);
     lines
 }
 

@@ -40,7 +40,8 @@ const LEAST_PEERS: usize = 6;
 /// Points that fill space have 0.2 among 16 neighbours, noisy scans below 0.05.
 const FILLS: f64 = 0.1;
 
-/// Whether each sample is lone or strewn. `tree` is that of the points, `table` has rows of at least [`NORMAL_NEIGHBOURS`] where there are so many.
+/// Whether each sample is lone or strewn. `tree` is that of the points, `table` has rows of at least [`NORMAL_NEIGHBOURS`] where
+/// there are so many.
 pub fn loose(points: &[DVec3], spacing: &[f64], table: &Table, tree: &Neighbours) -> Vec<bool> {
     let peers = Peers::new(tree, spacing);
     let is_loose = |near: &mut Vec<Near>, i: usize| {

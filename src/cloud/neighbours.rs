@@ -8,11 +8,11 @@ use super::tree::{Node, Tree};
 /// Points of a leaf: few enough to look at each, enough that boxes cost less than points.
 const LEAF: usize = 16;
 
-/// Points that look for their neighbours together: those of a node of the tree with at most so many. Of 16, 32, 64 the
-/// fastest.
+/// Points that look for their neighbours together: those of a node of the tree with at most so many. What lies around them is
+/// then not much more than each of them needs.
 const CROWD: usize = 32;
 
-/// How far all of a crowd look, over what one of them needs: a fifth was seen to leave one in a hundred short on even samples.
+/// How far all of a crowd look, over what one of them needs: those that need more ask for themselves.
 const SPARE: f64 = 1.2;
 
 /// Crowds a thread takes at a time, at least.
@@ -170,7 +170,7 @@ impl Neighbours {
         let visit = |room: &mut Room, crowd: &Node| {
             let mut out = Vec::new();
             self.look_around(crowd, k, room);
-            for at in crowd.start as usize..crowd.end as usize {
+            for at in crowd.places() {
                 self.nearest_around(at, k, room);
                 of(self.tree.order[at], &room.near, &mut out);
             }
@@ -180,7 +180,7 @@ impl Neighbours {
             let lists: Vec<Vec<T>> =
                 crowds.par_iter().with_min_len(CROWDS).map_init(Room::default, &visit).collect();
             for (crowd, list) in crowds.iter().zip(lists) {
-                put(&self.tree.order[crowd.start as usize..crowd.end as usize], list);
+                put(&self.tree.order[crowd.places()], list);
             }
         }
     }
@@ -213,8 +213,7 @@ impl Neighbours {
                 continue;
             }
             if near {
-                let places = node.start as usize..node.end as usize;
-                let points = self.points[places.clone()].iter().copied().zip(places);
+                let points = self.points[node.places()].iter().copied().zip(node.places());
                 room.around.extend(points.filter(|p| crowd.bounds.distance_squared(p.0) <= room.limit));
             }
             at = node.skip as usize;
@@ -246,8 +245,8 @@ impl Neighbours {
     }
 
     fn visit_leaf(&self, node: usize, x: DVec3, mut visit: impl FnMut(Near)) {
-        let (start, end) = (self.tree.nodes[node].start as usize, self.tree.nodes[node].end as usize);
-        for (p, &index) in self.points[start..end].iter().zip(&self.tree.order[start..end]) {
+        let places = self.tree.nodes[node].places();
+        for (p, &index) in self.points[places.clone()].iter().zip(&self.tree.order[places]) {
             visit(Near { distance_squared: (*p - x).length_squared(), index });
         }
     }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::neighbours::{Near, Neighbours, keep};
-use super::tree::{Node, Tree};
+use super::tree::Tree;
 
 /// Samples and their spacing, ready to be asked.
 pub struct Peers<'a> {
@@ -25,7 +25,7 @@ impl Peers<'_> {
         for (at, node) in tree.nodes.iter().enumerate().rev() {
             let join = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a.min(c), b.max(d)];
             ranges[at] = if tree.is_leaf(at) {
-                spacing[places(node)].iter().fold(ranges[at], |range, s| join(range, [*s, *s]))
+                spacing[node.places()].iter().fold(ranges[at], |range, s| join(range, [*s, *s]))
             } else {
                 let [a, b] = tree.children(at).map(|child| ranges[child]);
                 join(a, b)
@@ -49,7 +49,7 @@ impl Peers<'_> {
             let near =
                 |at: &usize| self.spacing[*at] < below && self.points[*at].distance_squared(x) <= limit;
             if may {
-                found += places(at).filter(near).count();
+                found += at.places().filter(near).count();
             }
             if count <= found {
                 return true;
@@ -70,7 +70,7 @@ impl Peers<'_> {
                 least <= self.ranges[node][1] && !(out.len() == k && out[k - 1].distance_squared < distance)
             },
             |out, node| {
-                for at in places(&self.tree.nodes[node]) {
+                for at in self.tree.nodes[node].places() {
                     let index = self.tree.order[at];
                     if index != own && least <= self.spacing[at] {
                         keep(out, k, Near { distance_squared: self.points[at].distance_squared(x), index });
@@ -79,10 +79,6 @@ impl Peers<'_> {
             },
         );
     }
-}
-
-fn places(node: &Node) -> std::ops::Range<usize> {
-    node.start as usize..node.end as usize
 }
 
 #[cfg(test)]

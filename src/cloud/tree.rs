@@ -1,5 +1,7 @@
 //! A k-d tree over points, in the order of its traversal, for neighbours and for the winding number.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use crate::geom::Aabb;
@@ -16,6 +18,13 @@ pub struct Node {
     pub end: u32,
     /// The first node that is not of this subtree.
     pub skip: u32,
+}
+
+impl Node {
+    /// Its points, by their places in the tree.
+    pub fn places(&self) -> Range<usize> {
+        self.start as usize..self.end as usize
+    }
 }
 
 /// Deeper than any tree of 2^32 points halved at each level.

@@ -76,12 +76,11 @@ impl Winding {
                 .collect(),
         };
         for node in &tree.nodes {
-            let (start, end) = (node.start as usize, node.end as usize);
-            let (points, dipoles) = (&winding.points[start..end], &winding.dipoles[start..end]);
+            let (points, dipoles) = (&winding.points[node.places()], &winding.dipoles[node.places()]);
             let center = center(points, dipoles);
             let radius = points.iter().map(|p| p.distance(center)).fold(0.0, f64::max);
             // One point is its own expansion, but at its place.
-            let far = if start + 1 == end { f64::INFINITY } else { (opening * radius).powi(2) };
+            let far = if points.len() == 1 { f64::INFINITY } else { (opening * radius).powi(2) };
             winding.heads.push(Head { center, far, start: node.start, end: node.end, skip: node.skip });
             winding.moments.push(Moments::new(points, dipoles, center));
         }

@@ -261,7 +261,7 @@ impl Few {
         self.inside |= u64::from(chord.begins_inside()) << slot;
         for (end, entering) in [(0, true), (1, false)] {
             let (t, part) = (chord.ends[end], chord.parts[end]);
-            // So is an end of a chord that is none.
+            // An infinite end is no crossing; a chord that is none has two.
             if t.is_finite() {
                 self.insert(Hit { t, part, slot: slot as u8, entering });
             }
