@@ -165,6 +165,77 @@ warning[W0125]: `sliver` is thinner than rounding can tell so far from the origi
 }
 
 finds! {
+    what_an_operator_leaves_can_be_a_film: "let base = box([0, 0, 0], [1, 1, 1])\ndraw base - box([-1, -1, -1], [2, 2, 0.999999999999998])\n",
+    r#"
+warning[W0124]: nothing is left of the base of this difference
+ --> scene.pss:2:6
+  |
+2 | draw base - box([-1, -1, -1], [2, 2, 0.999999999999998])
+  |      ^^^^   -------------------------------------------- this one
+  |      |
+  |      lies wholly inside the cutter
+  = help: make the cutter smaller or move it; what both hold is written `a & b`
+
+warning[W0125]: what is left between `base` and `box` is thinner than rounding can tell
+ --> scene.pss:2:13
+  |
+1 | let base = box([0, 0, 0], [1, 1, 1])
+  |            ------------------------- and this
+2 | draw base - box([-1, -1, -1], [2, 2, 0.999999999999998])
+  |             ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ dropped at this
+  = help: make it thicker, or let the one stand out of the other
+"#
+}
+
+finds! {
+    a_gap_can_be_as_thin: "draw box([0, 0, 0], [1, 1, 1]) | box([0, 0, 1.000000000000002], [1, 1, 2])\n",
+    r#"
+warning[W0125]: the gap between `box` and `box` is thinner than rounding can tell
+ --> scene.pss:1:34
+  |
+1 | draw box([0, 0, 0], [1, 1, 1]) | box([0, 0, 1.000000000000002], [1, 1, 2])
+  |      -------------------------   ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ closed at this
+  |      |
+  |      and this
+  = help: make it wider, or let the one reach into the other
+"#
+}
+
+finds! {
+    a_clip_can_leave_nothing: "draw plane(z: 0).clip(sphere(r: 1, at: [0, 0, 5]))\ndraw box(size: 1).clip(sphere(r: 0.5, at: [0, 0, 3]))\ndraw sphere(r: 1, at: [9, 0, 0])\n",
+    r#"
+warning[W0123]: nothing is left of what is drawn here
+ --> scene.pss:1:6
+  |
+1 | draw plane(z: 0).clip(sphere(r: 1, at: [0, 0, 5]))
+  |      ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ no test line finds anything
+  = help: look at the sizes and places of its parts: do they meet, does a cutter take all?
+
+warning[W0123]: nothing is left of what is drawn here
+ --> scene.pss:2:6
+  |
+2 | draw box(size: 1).clip(sphere(r: 0.5, at: [0, 0, 3]))
+  |      ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ no test line finds anything
+  = help: look at the sizes and places of its parts: do they meet, does a cutter take all?
+"#
+}
+
+finds! { a_clip_that_leaves_something_is_fine: "draw plane(z: 0).clip(sphere(r: 1))\ndraw box(size: 1).clip(sphere(r: 0.55)).move([3, 0, 0])\n" }
+
+finds! { faces_brought_together_by_turns_are_no_film: "let a = box(size: 1).rotate_z(10deg).rotate_x(20deg)\nlet b = box(size: 1, at: [0, 0, 1]).rotate_z(5deg).rotate_z(5deg).rotate_x(8deg).rotate_x(12deg)\ndraw (a | b).move([3, 2, 1])\n",
+    r#"
+warning[W0121]: faces of `a` and `b` coincide
+ --> scene.pss:2:9
+  |
+1 | let a = box(size: 1).rotate_z(10deg).rotate_x(20deg)
+  |         ------------ and this one
+2 | let b = box(size: 1, at: [0, 0, 1]).rotate_z(5deg).rotate_z(5deg).rotate_x(8deg).rotate_x(12deg)
+  |         ^^^^^^^^^^^^^^^^^^^^^^^^^^^ this one
+  = help: nothing is wrong with that; if a cut shall go through, let the cutter stand out of what it cuts
+"#
+}
+
+finds! {
     solids_drawn_into_each_other_overlap: "let a = box(size: 2)\ndraw a\ndraw box(size: 2, at: [1.5, 0, 0])\n",
     r#"
 warning[W0121]: faces of `a` and `box` coincide

@@ -3,43 +3,12 @@
 mod csg_support;
 
 use csg_support::draws::Draws;
+use csg_support::frames::{each_frame, through};
 use csg_support::scene::{shot, spans};
 use glam::{DAffine3, DVec3};
 use pss::csg::Scratch;
 use pss::geom::{Interval, Ray};
 use pss::shot::Shot;
-
-const OFFSETS: [f64; 3] = [0.0, 1e3, 1e6];
-
-/// One of 64 rotations and an offset, as a method chain of the language and as a map.
-fn frame(i: u64, offset: f64) -> (String, DAffine3) {
-    let mut draws = Draws::new(i + 1);
-    let (mut axis, mut degrees) = (draws.direction(), draws.between(0.0, 180.0));
-    if i < 8 {
-        (axis, degrees) = (DVec3::AXES[i as usize % 3], [0.0, 90.0, 45.0, 30.0][i as usize / 2]);
-    }
-    let to = offset * DVec3::new(1.0, -0.7, 0.3);
-    let text = format!(
-        ".rotate(axis: [{}, {}, {}], by: {degrees:?}deg).move([{:?}, {:?}, {:?}])",
-        axis.x, axis.y, axis.z, to.x, to.y, to.z
-    );
-    (text, DAffine3::from_translation(to) * DAffine3::from_axis_angle(axis, degrees.to_radians()))
-}
-
-fn each_frame(mut check: impl FnMut(&str, &DAffine3)) {
-    for i in 0..64 {
-        for offset in OFFSETS {
-            let (text, map) = frame(i, offset);
-            check(&text, &map);
-        }
-    }
-}
-
-/// A ray through two points of the scene's own frame.
-fn through(map: &DAffine3, a: DVec3, b: DVec3) -> Ray {
-    let [a, b] = [a, b].map(|p| map.transform_point3(p));
-    Ray::new(a, b - a)
-}
 
 fn lengths(shot: &Shot, ray: &Ray, scratch: &mut Scratch) -> Vec<f64> {
     spans(shot, ray, scratch).iter().map(|s| s.interval().length()).collect()

@@ -7,9 +7,18 @@ use csg_support::draws::Draws;
 use csg_support::line::{self, Line, axis};
 use pss::csg::{Expr, Leaf, Object, Scratch, Span, Spans};
 use pss::geom::{Aabb, Interval};
+use rayon::prelude::*;
 use std::sync::Arc;
 
-const TRIALS: u64 = 10_000;
+/// Trials of each law: a hundred thousand, a million with `PSS_LONG=1`, by batches that each have their own seed.
+fn each_trial(seed: u64, trial: impl Fn(u64, &mut Draws, &mut Scratch) + Sync) {
+    const BATCH: u64 = 1000;
+    let batches = if std::env::var_os("PSS_LONG").is_some() { 1000 } else { 100 };
+    (0..batches).into_par_iter().for_each(|batch| {
+        let (mut draws, mut scratch) = (Draws::new(seed << 32 | batch), Scratch::default());
+        (0..BATCH).for_each(|i| trial(batch * BATCH + i, &mut draws, &mut scratch));
+    });
+}
 
 /// Spans as pairs of numbers.
 type List = Vec<(f64, f64)>;
@@ -71,13 +80,11 @@ const OPS: [Op; 4] = [
 /// A1, A2, A6, A12: one set with itself, and complements; unbounded sets are among them.
 #[test]
 fn a1_a2_a6_a12_a_set_with_itself() {
-    let mut scratch = Scratch::default();
-    let mut draws = Draws::new(1);
-    for _ in 0..TRIALS {
-        let a = line::random(&mut draws, true);
+    each_trial(1, |_, draws, scratch| {
+        let a = line::random(draws, true);
         let want = cells(|x| inside(&a, x));
         let leaves = leaves(vec![a]);
-        let mut of = |expr: Expr| list(&Object::new(leaves.clone(), &expr), &mut scratch);
+        let mut of = |expr: Expr| list(&Object::new(leaves.clone(), &expr), scratch);
         let none = List::new();
         assert_eq!(of(Expr::And(vec![leaf(0), not(leaf(0))])), none, "A - A");
         assert_eq!(of(Expr::Or(vec![leaf(0), leaf(0)])), want, "A | A");
@@ -86,16 +93,14 @@ fn a1_a2_a6_a12_a_set_with_itself() {
         let copies = 1 + draws.below(6);
         let xor = of(Expr::Xor(vec![leaf(0); copies]));
         assert_eq!(xor, if copies % 2 == 1 { want } else { none }, "{copies} copies in ^");
-    }
+    });
 }
 
 /// A3, A5, A11 and all else that a truth table says: two to four sets in every operator and nested pairs of them.
 #[test]
 fn a3_a5_all_pairs_of_operators_are_their_truth_tables() {
-    let mut scratch = Scratch::default();
-    let mut draws = Draws::new(2);
-    for trial in 0..TRIALS {
-        let lines: Vec<Line> = (0..3).map(|_| line::random(&mut draws, trial % 2 == 0)).collect();
+    each_trial(2, |trial, draws, scratch| {
+        let lines: Vec<Line> = (0..3).map(|_| line::random(draws, trial % 2 == 0)).collect();
         let (outer, inner) = (OPS[draws.below(4)], OPS[draws.below(4)]);
         let left = draws.chance(0.5);
         let want = cells(|x| {
@@ -108,18 +113,47 @@ fn a3_a5_all_pairs_of_operators_are_their_truth_tables() {
             outer.0(vec![leaf(0), inner.0(vec![leaf(1), leaf(2)])])
         };
         let leaves = leaves(lines);
-        assert_eq!(list(&Object::new(leaves, &expr), &mut scratch), want, "{expr:?}");
-    }
+        assert_eq!(list(&Object::new(leaves, &expr), scratch), want, "{expr:?}");
+    });
+}
+
+/// A3, A5 and A6: the laws themselves, both sides by the evaluator.
+#[test]
+fn a3_a5_a6_laws_of_two_and_three_sets() {
+    let (a, b, c) = (|| leaf(0), || leaf(1), || leaf(2));
+    let or = |x, y| Expr::Or(vec![x, y]);
+    let and = |x, y| Expr::And(vec![x, y]);
+    let minus = |x, y| Expr::And(vec![x, not(y)]);
+    let xor = |x, y| Expr::Xor(vec![x, y]);
+    let all = || leaf(3);
+    let laws = [
+        ("A3 |", minus(all(), or(a(), b())), and(minus(all(), a()), minus(all(), b()))),
+        ("A3 &", minus(all(), and(a(), b())), or(minus(all(), a()), minus(all(), b()))),
+        ("A5 A-(B|C)", minus(a(), or(b(), c())), minus(minus(a(), b()), c())),
+        ("A5 A-(B&C)", minus(a(), and(b(), c())), or(minus(a(), b()), minus(a(), c()))),
+        ("A5 A-(B-C)", minus(a(), minus(b(), c())), or(minus(a(), b()), and(a(), c()))),
+        ("A5 (A-B)|(A&B)", or(minus(a(), b()), and(a(), b())), a()),
+        ("A5 (A-B)|B", or(minus(a(), b()), b()), or(a(), b())),
+        ("A5 A|(A&B)", or(a(), and(a(), b())), a()),
+        ("A6 (A|B)-(A&B)", xor(a(), b()), minus(or(a(), b()), and(a(), b()))),
+        ("A6 (A-B)|(B-A)", xor(a(), b()), or(minus(a(), b()), minus(b(), a()))),
+    ];
+    each_trial(5, |trial, draws, scratch| {
+        let mut lines: Vec<Line> = (0..3).map(|_| line::random(draws, false)).collect();
+        lines.push(Line::new(&[0.0, 64.0]));
+        let (name, left, right) = &laws[trial as usize % laws.len()];
+        let leaves = leaves(lines);
+        let [left, right] = [left, right].map(|e| list(&Object::new(leaves.clone(), e), scratch));
+        assert_eq!(left, right, "{name} {leaves:?}");
+    });
 }
 
 /// A4: three to thirty-two operands, any order, any brackets.
 #[test]
 fn a4_many_operands_in_any_brackets() {
-    let mut scratch = Scratch::default();
-    let mut draws = Draws::new(3);
-    for trial in 0..TRIALS {
+    each_trial(3, |trial, draws, scratch| {
         let count = 3 + draws.below(30);
-        let lines: Vec<Line> = (0..count).map(|_| line::random(&mut draws, false)).collect();
+        let lines: Vec<Line> = (0..count).map(|_| line::random(draws, false)).collect();
         let node: fn(Vec<Expr>) -> Expr = [Expr::Or, Expr::And, Expr::Xor][(trial % 3) as usize];
         let want = cells(|x| {
             let in_it = lines.iter().filter(|l| inside(l, x)).count();
@@ -133,8 +167,8 @@ fn a4_many_operands_in_any_brackets() {
             parts.insert(at, node(pair));
         }
         let object = Object::new(leaves(lines), &parts[0]);
-        assert_eq!(list(&object, &mut scratch), want);
-    }
+        assert_eq!(list(&object, scratch), want);
+    });
 }
 
 /// Operands that a ray meets again and again: a torus twice, a gear thirty-two times, two gears tooth in gap; every
@@ -327,12 +361,11 @@ impl pss::solid::Solid for Raw {
 /// A11: m(A) + m(B) = m(A | B) + m(A & B), and m(A ^ B) = m(A) + m(B) - 2 m(A & B), exactly.
 #[test]
 fn a11_measures_add_up() {
-    let (mut scratch, mut draws) = (Scratch::default(), Draws::new(11));
-    for _ in 0..TRIALS {
-        let leaves = leaves(vec![line::random(&mut draws, false), line::random(&mut draws, false)]);
+    each_trial(11, |_, draws, scratch| {
+        let leaves = leaves(vec![line::random(draws, false), line::random(draws, false)]);
         let both = || vec![leaf(0), leaf(1)];
         let mut measure = |expr: Expr| {
-            let spans = list(&Object::new(leaves.clone(), &expr), &mut scratch);
+            let spans = list(&Object::new(leaves.clone(), &expr), scratch);
             spans.iter().map(|s| s.1 - s.0).sum::<f64>()
         };
         let (a, b) = (measure(leaf(0)), measure(leaf(1)));
@@ -340,7 +373,7 @@ fn a11_measures_add_up() {
             (measure(Expr::Or(both())), measure(Expr::And(both())), measure(Expr::Xor(both())));
         assert_eq!(a + b, or + and);
         assert_eq!(xor, a + b - 2.0 * and);
-    }
+    });
 }
 
 /// A15: who is written first owns a shared front, a cutter its cut, whatever the order of operands; the cut's normal points

@@ -24,6 +24,9 @@ const PLACES: usize = 200;
 /// Lines for each of these at least: else there are fewer places.
 const FEWEST: usize = 8;
 
+/// The part of the first lines' work that may be spent on it is one in so many.
+const SHARE: u64 = 4;
+
 /// Along the axes but for a little: in a plane of symmetry edges are met, where faces seem to coincide.
 const ABOUT: [[f64; 3]; 3] = [[1.0, 0.123, 0.077], [0.077, 1.0, 0.123], [0.123, 0.077, 1.0]];
 
@@ -35,6 +38,29 @@ pub(super) fn nothing(object: &Object, seen: &Seen) -> Vec<u32> {
     };
     let leaves = object.leaves().par_iter().enumerate().map(|(i, leaf)| (leaf, i as u32));
     leaves.map_init(Scratch::default, is_nothing).flatten().collect()
+}
+
+/// Sheets that no line through their boxes meets.
+pub(super) fn nothing_open(sheets: &[Leaf]) -> Vec<u32> {
+    let is_nothing = |scratch: &mut Scratch, (leaf, i): (&Leaf, u32)| {
+        let nothing = leaf.bounds.is_empty() || leaf.bounds.is_finite() && !is_crossed(leaf, scratch);
+        nothing.then_some(i)
+    };
+    let sheets = sheets.par_iter().enumerate().map(|(i, leaf)| (leaf, i as u32));
+    sheets.map_init(Scratch::default, is_nothing).flatten().collect()
+}
+
+fn is_crossed(sheet: &Leaf, scratch: &mut Scratch) -> bool {
+    let mut found = Vec::new();
+    (0..ALONE).any(|number| {
+        let ray = through(&sheet.bounds, sheet.bounds.diagonal(), number);
+        let met = if ray.is_valid() { sheet.met(&ray) } else { Interval::EMPTY };
+        if !met.is_empty() {
+            let local = sheet.place.ray_to_local(&ray);
+            sheet.crossings(&local, met, &mut scratch.solid, &mut found);
+        }
+        !found.is_empty()
+    })
 }
 
 fn is_met(leaf: &Leaf, scratch: &mut Scratch) -> bool {
@@ -75,7 +101,7 @@ pub(super) fn lines(object: &Object, outline: &Outline, nodes: usize, seen: &See
         let others = others.filter(|(b, j)| !apart(b) && !seen.overlaps.contains_key(&(i, *j)));
         pairs.extend(others.map(|(b, _)| [a.leaves.clone(), b.leaves.clone()]));
     }
-    let most = (WORK / nodes.max(1) as u64) as usize;
+    let most = (WORK / SHARE / nodes.max(1) as u64) as usize;
     pairs.truncate(PLACES.min(most / FEWEST));
     let each = most / pairs.len().max(1);
     let rays = pairs.iter().flat_map(|[a, b]| between(&boxes(a), &boxes(b)).into_iter().take(each));

@@ -18,7 +18,10 @@ fn find(evidence: &Evidence) -> Vec<Diagnostic> {
         let leaf = calls.iter().position(|c| *c == at);
         leaf.map_or("", |i| &*evidence.leaves[i].name)
     };
-    let pairs: BTreeSet<_> = evidence.seen.shared.iter().map(place).collect();
+    // Faces that leave a film have a finding of their own.
+    let seen = &evidence.seen;
+    let shared = seen.shared.iter().filter(|pair| !seen.films.contains_key(pair));
+    let pairs: BTreeSet<_> = shared.map(place).collect();
     let warn = |(a, b)| match a == b {
         true => Diagnostic::warning(FINDING.code, format!("faces of copies of `{}` coincide", name(a)))
             .at(a, "these")

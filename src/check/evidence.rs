@@ -11,6 +11,7 @@ use super::logic::{Logic, State};
 use crate::csg::{Leaf, Object};
 use crate::geom::{Aabb, Ray, tolerance};
 use crate::prepare::{Cutting, Outline};
+use crate::shot::World;
 use crate::solid::Scratch;
 use crate::source::Span;
 
@@ -36,10 +37,13 @@ pub(super) struct Seen {
     pub parts: BTreeSet<u32>,
     /// Pairs of leaves whose faces coincide.
     pub shared: BTreeSet<(u32, u32)>,
-    /// Leaves that are thinner somewhere than rounding can tell, in a way that shows.
-    pub films: BTreeSet<u32>,
+    /// Leaves whose faces stand nearer somewhere than the clean-up tells apart, but further than faces that are meant to
+    /// coincide; a leaf with itself where it is as thin as that by itself. Whether it is a film there, not a slit.
+    pub films: BTreeMap<(u32, u32), bool>,
     /// Pairs of solids drawn, and a box around where lines were inside both.
     pub overlaps: BTreeMap<(u32, u32), Aabb>,
+    /// Sheets that are nothing ([`closer::nothing_open`]).
+    pub gone: BTreeSet<u32>,
     /// Cutters that took something away.
     pub cutting: BTreeSet<Span>,
     /// Bases that a line was inside.
@@ -59,7 +63,8 @@ impl Seen {
         self.crossed.extend(o.crossed);
         self.parts.extend(o.parts);
         self.shared.extend(o.shared);
-        self.films.extend(o.films);
+        o.films.into_iter().for_each(|(pair, film)| *self.films.entry(pair).or_default() |= film);
+        self.gone.extend(o.gone);
         for (pair, place) in o.overlaps {
             let known = self.overlaps.entry(pair).or_default();
             *known = known.union(place);
@@ -81,7 +86,8 @@ const BATCH: usize = 64;
 
 impl<'a> Evidence<'a> {
     /// Casts all test lines.
-    pub fn gather(object: &'a Object, outline: &'a Outline) -> Evidence<'a> {
+    pub fn gather(world: &'a World, outline: &'a Outline) -> Evidence<'a> {
+        let object = world.solids();
         let logic = Logic::new(outline);
         let lines = lines::lines(object, outline, logic.len());
         let look = |batch: &[Ray]| {
@@ -93,6 +99,7 @@ impl<'a> Evidence<'a> {
         let mut seen = all(&lines).into_iter().fold(Seen::default(), Seen::add);
         seen = all(&closer::lines(object, outline, logic.len(), &seen)).into_iter().fold(seen, Seen::add);
         seen.nothing.extend(closer::nothing(object, &seen));
+        seen.gone.extend(closer::nothing_open(world.open()));
         Evidence { leaves: object.leaves(), outline, seen }
     }
 }
@@ -174,12 +181,23 @@ impl<'a> Witness<'a> {
 
     /// Whether what lies between two crossings is nothing to the clean-up of set algebra.
     fn is_thin(&self, a: &Event, b: &Event, ray: &Ray) -> bool {
+        self.is_within(a, b, ray, tolerance::cleanup)
+    }
+
+    /// Whether two crossings stand no further apart, along a normal, than a tolerance of the scale in play.
+    fn is_within(&self, a: &Event, b: &Event, ray: &Ray, tolerance: fn(f64) -> f64) -> bool {
         let leaves = [a, b].map(|e| &self.object.leaves()[e.leaf as usize]);
         let scale = ray.origin.length().max(ray.at(a.t).length().min(ray.at(b.t).length()));
         let scale = scale.max(leaves[0].scale()).max(leaves[1].scale());
         let error = a.crossing.shift * leaves[0].place.stretch + b.crossing.shift * leaves[1].place.stretch;
         let thickness = (b.t - a.t) * ray.dir.length() * a.slope.max(b.slope);
-        thickness <= tolerance::cleanup(scale) + error
+        thickness <= tolerance(scale) + error
+    }
+
+    /// The leaves of a thin stretch that is a film: of one leaf, or thicker than faces that are meant to coincide leave it.
+    fn film_of(&self, a: &Event, b: &Event, ray: &Ray) -> Option<(u32, u32)> {
+        let built = a.leaf == b.leaf || !self.is_within(a, b, ray, tolerance::film);
+        built.then_some((a.leaf.min(b.leaf), a.leaf.max(b.leaf)))
     }
 
     /// The stretches between crossings, the unbounded ones included.
@@ -196,8 +214,10 @@ impl<'a> Witness<'a> {
             self.logic.evaluate(&self.inside, &mut self.state);
             let any = self.logic.parts.iter().any(|p| self.state.holds[*p as usize]);
             let thin = before.zip(after).filter(|(a, b)| self.is_thin(a, b, ray));
-            let one = thin.filter(|(a, b)| a.leaf == b.leaf).map(|(a, _)| a.leaf);
-            self.seen.films.extend(films.next(any, one));
+            let film = thin.and_then(|(a, b)| self.film_of(a, b, ray));
+            if let Some(pair) = films.next(any, film) {
+                *self.seen.films.entry(pair).or_default() |= !any;
+            }
             if thin.is_none() {
                 let end = |e: Option<&Event>, none: f64| e.map_or(DVec3::splat(none), |e| ray.at(e.t));
                 self.stretch([end(before, f64::NEG_INFINITY), end(after, f64::INFINITY)]);
@@ -263,23 +283,21 @@ impl CutSeen {
 /// Follows the truth along a line for films and slits: stretches that differ from both neighbours, which are alike.
 #[derive(Default)]
 struct Films {
-    /// The truth before the film, and the leaf whose film it is.
-    open: Option<(bool, Option<u32>)>,
+    /// The truth before the film, and the leaves whose faces bound it.
+    open: Option<(bool, (u32, u32))>,
     before: Option<bool>,
 }
 
 impl Films {
-    /// The next stretch: its truth, and the leaf whose two faces bound it if it is thin. Returns the leaf of a film that
+    /// The next stretch: its truth, and the leaves whose faces bound it if it is thin. Returns the leaves of a film that
     /// ended here.
-    fn next(&mut self, holds: bool, thin_of: Option<u32>) -> Option<u32> {
-        let found = match self.open.take() {
-            Some((before, leaf)) if before == holds => leaf,
-            _ => None,
-        };
-        if let (Some(before), Some(leaf)) = (self.before, thin_of)
+    fn next(&mut self, holds: bool, thin_of: Option<(u32, u32)>) -> Option<(u32, u32)> {
+        let open = self.open.take();
+        let found = open.filter(|(before, _)| *before == holds).map(|(_, leaves)| leaves);
+        if let (Some(before), Some(leaves)) = (self.before, thin_of)
             && before != holds
         {
-            self.open = Some((before, Some(leaf)));
+            self.open = Some((before, leaves));
         }
         self.before = Some(holds);
         found

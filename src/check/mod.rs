@@ -50,7 +50,7 @@ const MOST: usize = 20;
 
 /// Looks at all solids of a world; warnings in the order of the table.
 pub fn findings(world: &World, outline: &Outline) -> Vec<Diagnostic> {
-    let evidence = Evidence::gather(world.solids(), outline);
+    let evidence = Evidence::gather(world, outline);
     let mut all = Vec::new();
     for finding in FINDINGS {
         let mut found = (finding.find)(&evidence);

@@ -13,8 +13,10 @@ fn find(evidence: &Evidence) -> Vec<Diagnostic> {
     let seen = &evidence.seen;
     let mut unseen = BTreeMap::new();
     for (at, leaf) in evidence.outline.calls.iter().zip(0..) {
-        // A shape too thin to tell has a finding of its own.
-        let met = seen.films.contains(&leaf) || !seen.nothing.contains(&leaf);
+        // A shape too thin to tell has a finding of its own, one whose size is zero a warning of the language.
+        let told = seen.films.contains_key(&(leaf, leaf))
+            || evidence.leaves[leaf as usize].bounds.size().min_element() == 0.0;
+        let met = told || !seen.nothing.contains(&leaf);
         let known = unseen.entry(*at).or_insert((false, leaf));
         known.0 |= met;
     }

@@ -27,6 +27,8 @@ pub struct Clipped {
     pub of: Clippee,
     /// The solid.
     pub by: Arc<Object>,
+    /// A box around the solid.
+    pub within: Aabb,
 }
 
 impl Clipped {
@@ -69,10 +71,11 @@ impl Solid for Clipped {
     }
 
     fn bounds(&self) -> Aabb {
-        match &self.of {
+        let own = match &self.of {
             Clippee::Sheet(leaf) => leaf.bounds,
             Clippee::Faces(object, leaf) => object.leaves()[*leaf as usize].bounds,
-        }
+        };
+        own.intersection(self.within)
     }
 
     fn crossings(

@@ -27,6 +27,12 @@ pub fn cleanup(scale: f64) -> f64 {
     CLEANUP * EPS * scale
 }
 
+/// Two faces that are meant to coincide stand apart by less than this, world length: 3.6 units of `EPS` times the scale were
+/// seen, a quarter of [`CLEANUP`] is 4. What is thicker and cleaned up all the same is a film that somebody built.
+pub fn film(scale: f64) -> f64 {
+    0.25 * cleanup(scale)
+}
+
 /// How far past its first crossing an object within an object goes on, in thicknesses of its own clean-up: so far that
 /// what is around it, of up to this many times its size, need not ask again to see that nothing is near. It costs next to
 /// nothing: near things are rare.

@@ -17,7 +17,7 @@ use super::samples::{Sampling, sample};
 use crate::cloud::Cloud;
 use crate::csg::{Clipped, Clippee, Expr, Leaf, Object};
 use crate::diag::Diagnostic;
-use crate::geom::{Aabb, Placement};
+use crate::geom::{Aabb, Placement, tolerance};
 use crate::scene::{BooleanOp, Call, FitTo, MaterialId, Operand, Shape, ShapeKind, Value};
 use crate::solid::table::{self, Build};
 use crate::solid::{Body, Solid};
@@ -93,13 +93,14 @@ impl<'b, 'o> Lowering<'b, 'o> {
         }
     }
 
-    /// Lowers what is drawn.
-    pub fn draw(&mut self, shape: &Shape) -> Result<Drawn, Diagnostic> {
+    /// Lowers what is drawn at a place of the text.
+    pub fn draw(&mut self, shape: &Shape, at: Span) -> Result<Drawn, Diagnostic> {
         limits::check_count(shape, &self.groups)?;
         let bounds = self.extent(shape, &DAffine3::IDENTITY)?;
         let solid = match self.lower(shape, TOP)? {
             Lowered::Solid(expr) => Some(expr),
             Lowered::Sheets(sheets) => {
+                self.outline.sheets.extend(sheets.iter().map(|_| at));
                 self.sheets.extend(sheets);
                 None
             }
@@ -233,6 +234,8 @@ impl<'b, 'o> Lowering<'b, 'o> {
         }
         let own = Context { wanted: None, edits: None, turned: false, cutter: false, ..context };
         let asked = Context { wanted: Some((".clip", by.at)), material: None, ..own };
+        let within = self.extent(&by.shape, &context.world_from_local)?;
+        let within = within.inflated(tolerance::cleanup(within.farthest()));
         let mut cutter = Lowering::new(self.builder, self.measure_all);
         let expr = match cutter.lower(&by.shape, asked)? {
             Lowered::Solid(expr) => expr,
@@ -252,7 +255,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
             }
         };
         let sheet = |(leaf, of): (Leaf, Clippee)| {
-            let clipped = Leaf::new(Arc::new(Clipped { of, by: by.clone() }), Placement::IDENTITY);
+            let clipped = Leaf::new(Arc::new(Clipped { of, by: by.clone(), within }), Placement::IDENTITY);
             Leaf { solid: clipped.solid, place: clipped.place, bounds: clipped.bounds, ..leaf }
         };
         Ok(Lowered::Sheets(sheets.into_iter().map(sheet).collect()))

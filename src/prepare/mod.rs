@@ -194,7 +194,7 @@ fn world(
     let mut bounds = Aabb::EMPTY;
     for draw in &scene.draws {
         let first = lowering.leaves.len() as u32;
-        match lowering.draw(&draw.shape) {
+        match lowering.draw(&draw.shape, draw.at) {
             Ok(drawn) => {
                 if let Some(expr) = drawn.solid {
                     solids.push(expr);

@@ -16,6 +16,8 @@ pub struct Outline {
     pub cuts: Vec<Cutting>,
     /// For each leaf of the world's object the place of the call that made it.
     pub calls: Vec<Span>,
+    /// For each sheet of the world the place of what is drawn.
+    pub sheets: Vec<Span>,
 }
 
 /// A solid drawn.

@@ -60,6 +60,11 @@ impl World {
         &self.solids
     }
 
+    /// The sheets.
+    pub fn open(&self) -> &[Leaf] {
+        &self.sheets
+    }
+
     /// A box around everything bounded that is drawn; empty where nothing is.
     pub fn bounds(&self) -> Aabb {
         self.bounds

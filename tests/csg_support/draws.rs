@@ -39,6 +39,10 @@ impl Draws {
         from[self.below(from.len())]
     }
 
+    pub fn among<'a, T>(&mut self, from: &'a [T]) -> &'a T {
+        &from[self.below(from.len())]
+    }
+
     pub fn shuffle<T>(&mut self, list: &mut [T]) {
         for i in (1..list.len()).rev() {
             list.swap(i, self.below(i + 1));

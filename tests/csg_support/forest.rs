@@ -1,18 +1,57 @@
 //! Random objects: leaves that like to share faces, expressions over them, and rays that like to run in faces.
 
 use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DAffine3, DVec3};
 use pss::csg::{Expr, Leaf};
 use pss::geom::{Aabb, Interval, Placement, Ray};
+use pss::heights::Heights;
 use pss::solid::block::Block;
 use pss::solid::cylinder::Cylinder;
 use pss::solid::half_space::HalfSpace;
+use pss::solid::heightfield::HeightField;
+use pss::solid::mesh::TriangleMesh;
 use pss::solid::sphere::Sphere;
 use pss::solid::{Answer, Crossing, Scratch, Solid};
 
 use super::draws::Draws;
+use super::scene::shot;
+
+/// Solids of the other kinds as texts, sized so that they meet what has small integers for coordinates.
+const OTHERS: [&str; 14] = [
+    "torus(major: 1, minor: 0.25)",
+    "torus(major: 0.5, minor: 1)",
+    "cone(r1: 1, r2: 0, h: 2)",
+    "cone(r1: 0.5, r2: 1, h: 1)",
+    "capsule(r: 0.5, from: [0, 0, 0], to: [1, 0, 0])",
+    "box([-1, -1, -1], [1, 1, 1], round: 0.25)",
+    "tube([[0, 0, 0], [1, 0, 0], [1, 1, 1]], r: 0.25)",
+    "superellipsoid(r: 1, e1: 0.4, e2: 0.6)",
+    "quadric(squares: [1, 1, -1], constant: -0.25)",
+    "implicit(x**4 + y**4 + z**4 - 5 * (x**2 + y**2 + z**2) + 11.8 <= 0, inside: box(size: 6))",
+    "extrude([[0, 0], [2, 0], [2, 2], [1, 1], [0, 2]], h: 1)",
+    "extrude([[0, 0], [2, 0], [1, 2]], h: 2, twist: 90deg)",
+    "revolve([[0.5, 0], [1.5, 0], [1, 1]])",
+    "points(sphere(r: 1), samples: 400)",
+];
+
+/// A solid of each other kind, made once.
+fn others() -> &'static [Arc<dyn Solid>] {
+    static MADE: OnceLock<Vec<Arc<dyn Solid>>> = OnceLock::new();
+    MADE.get_or_init(|| {
+        let first = |text: &&str| shot(&format!("draw {text}")).world.solids().leaves()[0].solid.clone();
+        let mut all: Vec<Arc<dyn Solid>> = OTHERS.iter().map(first).collect();
+        let corners = "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n";
+        let faces = "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
+        let mesh = pss::mesh::read(format!("{corners}{faces}").as_bytes()).expect("an octahedron");
+        all.push(Arc::new(TriangleMesh::new(mesh)));
+        let values = (0..16).map(|i| [0.0, 0.5, 0.25, 1.0][i % 4 * (i / 4) % 4]).collect();
+        let heights = Heights { width: 4, depth: 4, values, notes: Vec::new() };
+        all.push(Arc::new(HeightField::new(heights, DVec3::new(2.0, 2.0, 1.0))));
+        all
+    })
+}
 
 /// A solid that does not say that it is of closed form: objects with it go the long way.
 #[derive(Debug)]
@@ -45,7 +84,8 @@ pub fn leaf(draws: &mut Draws, earlier: &mut Vec<f64>, rank: u64) -> Leaf {
 
 fn solid(draws: &mut Draws, earlier: &mut Vec<f64>) -> Arc<dyn Solid> {
     let radius = |d: &mut Draws, e: &mut Vec<f64>| d.coordinate(e).abs().max(1e-3);
-    match draws.below(4) {
+    match draws.below(6) {
+        5 => draws.among(others()).clone(),
         0 => {
             let center = draws.vector(earlier);
             let r = radius(draws, earlier);

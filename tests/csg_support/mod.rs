@@ -4,6 +4,7 @@
 
 pub mod draws;
 pub mod forest;
+pub mod frames;
 pub mod golden;
 pub mod line;
 pub mod oracle;
