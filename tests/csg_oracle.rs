@@ -26,7 +26,13 @@ fn spans(object: &Object, ray: &Ray, range: Interval, scratch: &mut Scratch) -> 
 fn tree(draws: &mut Draws) -> (Vec<Leaf>, Expr, Vec<f64>) {
     let mut earlier = Vec::new();
     let count = 1 + draws.below(8);
-    let leaves = (0..count).map(|i| forest::leaf(draws, &mut earlier, i as u64)).collect();
+    let mut leaves: Vec<Leaf> = (0..count).map(|i| forest::leaf(draws, &mut earlier, i as u64)).collect();
+    for i in 1..count {
+        // The same solid written twice.
+        if draws.chance(0.15) {
+            leaves[i] = Leaf { rank: i as u64, ..leaves[draws.below(i)].clone() };
+        }
+    }
     let depth = 1 + draws.below(6);
     (leaves, forest::expr(draws, count, depth), earlier)
 }

@@ -9,14 +9,14 @@
 use super::bundle::Bundle;
 use super::object::{Core, Scratch};
 use super::room::Room;
-use super::slots::{Few, Turn};
+use super::slots::{All, Few, Turn};
 use super::spans::Boundary;
 use super::truth::Truth;
 use super::walk::Sight;
 use glam::DVec3;
 
 use crate::geom::{Interval, Ray, tolerance};
-use crate::solid::{self, Cost};
+use crate::solid::{self, Chord, Cost};
 
 /// What a look finds out.
 enum Found<T> {
@@ -79,12 +79,12 @@ impl<'a> Look<'a> {
         };
         if let Some(few) = bundle.few(core) {
             look.room.walk.begin_at_end();
-            return few.iter().all(|leaf| look.take(*leaf, false)).then_some(look);
+            return few.iter().all(|leaf| look.take(*leaf)).then_some(look);
         }
         match &core.few {
             Some(all) => {
                 look.truths = Truths::Whole(all.root);
-                all.leaves().iter().all(|leaf| look.take(*leaf, true)).then_some(look)
+                look.take_all(all).then_some(look)
             }
             None => {
                 let Room { few, walk, .. } = &mut *look.room;
@@ -157,7 +157,7 @@ impl<'a> Look<'a> {
     #[inline(always)]
     fn take_shown(&mut self) -> bool {
         while let Some(leaf) = self.room.few.shown.pop() {
-            if self.core.costs[leaf as usize] != Cost::Closed || !self.take(leaf, false) {
+            if self.core.costs[leaf as usize] != Cost::Closed || !self.take(leaf) {
                 return false;
             }
         }
@@ -172,18 +172,37 @@ impl<'a> Look<'a> {
         true
     }
 
-    /// Asks a leaf and puts its crossings in order; false where there is no room. One that the line passes by needs none,
-    /// unless it has a place of its own.
+    /// Asks a leaf and puts its crossings in order; false where there is no room. One that the line passes by needs none.
     #[inline(always)]
-    fn take(&mut self, leaf: u32, has_place: bool) -> bool {
-        let own = &self.core.tree.leaves()[leaf as usize];
-        let mut moved = None;
-        let local = own.place.local_ray(self.ray, &mut moved);
-        match own.chord(local, self.scratch) {
-            Some(chord) if chord.is_none() && !has_place => true,
+    fn take(&mut self, leaf: u32) -> bool {
+        match self.chord(leaf) {
+            Some(chord) if chord.is_none() => true,
             Some(chord) => self.room.few.keep(leaf, &chord),
             None => false,
         }
+    }
+
+    /// Asks all leaves of an object that has few, each in a place of its own, until one that it needs is passed by.
+    #[inline(always)]
+    fn take_all(&mut self, all: &All) -> bool {
+        for (slot, leaf) in all.leaves().iter().enumerate() {
+            let Some(chord) = self.chord(*leaf) else { return false };
+            if slot < all.needed && chord.is_none() {
+                self.room.few.pass_by();
+                return true;
+            }
+            if !self.room.few.keep(*leaf, &chord) {
+                return false;
+            }
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn chord(&mut self, leaf: u32) -> Option<Chord> {
+        let own = &self.core.tree.leaves()[leaf as usize];
+        let mut moved = None;
+        own.chord(own.place.local_ray(self.ray, &mut moved), self.scratch)
     }
 
     /// Whether it is inside where these leaves are.

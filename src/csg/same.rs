@@ -1,6 +1,8 @@
-//! Leaves that are one and the same: one solid of one call, at one place, used twice. A ray asks it once.
+//! Leaves that are one and the same: one solid of one call, at one place, used twice; or equal solids at one place that stand
+//! side by side in a union or an intersection. A ray asks them once.
 
 use std::collections::HashMap;
+use std::hash::Hash;
 use std::sync::Arc;
 
 use super::leaf::Leaf;
@@ -11,15 +13,34 @@ pub(super) fn first_of_same(leaves: &[Leaf]) -> Vec<u32> {
     leaves.iter().zip(0..).map(|(leaf, i)| *known.entry(identity(leaf)).or_insert(i)).collect()
 }
 
+/// Of leaves that stand side by side in a union or an intersection, all in one sense, and are alike in all but their names and
+/// ranks, keeps the one that owns what they share: whatever changes with one changes with the other.
+pub(super) fn keep_owners(leaves: &[Leaf], side_by_side: &mut Vec<u32>) {
+    let mut owners = HashMap::with_capacity(side_by_side.len());
+    let owner_key = |leaf: u32| (leaves[leaf as usize].key(), leaf);
+    for &leaf in side_by_side.iter() {
+        let owner = owners.entry(likeness(&leaves[leaf as usize])).or_insert(leaf);
+        if owner_key(leaf) < owner_key(*owner) {
+            *owner = leaf;
+        }
+    }
+    side_by_side.retain(|leaf| owners[&likeness(&leaves[*leaf as usize])] == *leaf);
+}
+
 /// All that makes an answer of a leaf, and how it counts among those that share a face.
-fn identity(leaf: &Leaf) -> impl Eq + std::hash::Hash + use<'_> {
+fn identity(leaf: &Leaf) -> impl Eq + Hash + use<'_> {
+    (likeness(leaf), &*leaf.name, leaf.rank)
+}
+
+/// All that makes an answer of a leaf, and how it shows.
+fn likeness(leaf: &Leaf) -> impl Eq + Hash + use<> {
     // Instances share the object, each in a solid of its own.
     let solid = match &leaf.group {
         Some(group) => group.0.address(),
         None => Arc::as_ptr(&leaf.solid).cast::<()>(),
     };
     let place = leaf.place.world_from_local.to_cols_array().map(f64::to_bits);
-    (solid, place, &*leaf.name, leaf.material, leaf.cutter, leaf.rank)
+    (solid, place, leaf.material, leaf.cutter)
 }
 
 #[cfg(test)]
@@ -46,5 +67,21 @@ mod tests {
             ranked,
         ];
         assert_eq!(first_of_same(&leaves), [0, 1, 0, 3, 4, 4]);
+    }
+
+    #[test]
+    fn of_leaves_alike_the_owner_is_kept() {
+        let solid = Arc::new(Sphere { center: DVec3::ZERO, radii: DVec3::ONE });
+        let ranked = |rank: u64| Leaf { rank, ..Leaf::new(solid.clone(), Placement::IDENTITY) };
+        let leaves = [
+            ranked(5),
+            ranked(3),
+            Leaf { material: Some(1), ..ranked(4) },
+            Leaf { cutter: true, ..ranked(1) },
+            Leaf { material: Some(1), ..ranked(2) },
+        ];
+        let mut all = vec![0, 1, 2, 3, 4];
+        keep_owners(&leaves, &mut all);
+        assert_eq!(all, [1, 3, 4]);
     }
 }

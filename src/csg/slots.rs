@@ -45,6 +45,9 @@ impl Table {
 pub(super) struct All {
     leaves: Leaves,
     count: usize,
+    /// So many of the first have to be inside wherever the root is.
+    pub needed: usize,
+    /// Truth of the root for all states of them, as bits.
     pub root: u64,
 }
 
@@ -55,10 +58,17 @@ impl All {
         if matter().nth(IN_A_WORD).is_some() || matter().any(|leaf| costs[leaf as usize] != Cost::Closed) {
             return None;
         }
-        let (leaves, count) =
-            (std::array::from_fn(|slot| matter().nth(slot).unwrap_or_default()), matter().count());
-        let root = truths(tree, outside, &leaves[..count], &mut outside.clone());
-        Some(All { leaves, count, root })
+        let count = matter().count();
+        let mut leaves: Leaves = std::array::from_fn(|slot| matter().nth(slot).unwrap_or_default());
+        let of = |leaves: &Leaves| truths(tree, outside, &leaves[..count], &mut outside.clone());
+        let (found, root) = (leaves, of(&leaves));
+        let is_needed = |leaf: &u32| {
+            let slot = found.iter().position(|other| other == leaf);
+            (0..1u64 << count).all(|mask| root >> mask & 1 == 0 || slot.is_some_and(|s| mask >> s & 1 == 1))
+        };
+        leaves[..count].sort_by_key(|leaf| !is_needed(leaf));
+        let needed = leaves[..count].iter().filter(|leaf| is_needed(leaf)).count();
+        Some(All { leaves, count, needed, root: of(&leaves) })
     }
 
     /// They, by their indices.
@@ -235,6 +245,12 @@ impl Few {
         self.shown.clear();
     }
 
+    /// Forgets all crossings: the line is outside.
+    #[inline]
+    pub fn pass_by(&mut self) {
+        (self.inside, self.hit_count) = (0, 0);
+    }
+
     /// Makes a state that in which the leaves in these slots are inside.
     fn put(&self, core: &Core, mask: u64, state: &mut State) {
         state.reset(&core.tree, &core.outside);
@@ -249,7 +265,7 @@ impl Few {
     }
 
     /// Keeps a leaf with the ends of its chord; false where there is no room for it.
-    #[inline]
+    #[inline(always)]
     pub fn keep(&mut self, leaf: u32, chord: &Chord) -> bool {
         let slot = self.count;
         if slot == FEW {
@@ -270,7 +286,7 @@ impl Few {
     }
 
     /// Behind those at the same t.
-    #[inline]
+    #[inline(always)]
     fn insert(&mut self, hit: Hit) {
         let mut at = self.hit_count;
         while 0 < at && hit.t < self.hits[at - 1].t {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::expr::Expr;
 use super::leaf::Leaf;
-use super::same::first_of_same;
+use super::same::{first_of_same, keep_owners};
 use super::stem::Stems;
 
 /// How a node combines its children.
@@ -120,7 +120,7 @@ impl Tree {
     /// anywhere.
     pub fn new(leaves: Vec<Leaf>, expr: &Expr) -> Tree {
         let same = first_of_same(&leaves);
-        let draft = Draft::new(expr, &same);
+        let draft = Draft::new(expr, &same, &leaves);
         let order = draft.order();
         let mut place = vec![0; order.len()];
         order.iter().enumerate().for_each(|(i, n)| place[*n as usize] = i as u32);
@@ -224,6 +224,23 @@ struct Sketch {
     children: Vec<(Child, bool)>,
 }
 
+impl Sketch {
+    /// Of leaves alike that stand here in one sense one is kept.
+    fn keep_owners(&mut self, leaves: &[Leaf], sense: bool) {
+        let leaf = |(child, not): &(Child, bool)| match child {
+            Child::Leaf(leaf) if *not == sense => Some(*leaf),
+            _ => None,
+        };
+        let mut own: Vec<u32> = self.children.iter().filter_map(leaf).collect();
+        let count = own.len();
+        keep_owners(leaves, &mut own);
+        if own.len() < count {
+            let mut kept = own.into_iter().peekable();
+            self.children.retain(|child| leaf(child).is_none_or(|l| kept.next_if_eq(&l).is_some()));
+        }
+    }
+}
+
 /// Nodes with lists of their children; the root is the first.
 struct Draft<'e> {
     nodes: Vec<Sketch>,
@@ -236,7 +253,7 @@ struct Draft<'e> {
 }
 
 impl<'e> Draft<'e> {
-    fn new(expr: &'e Expr, same: &'e [u32]) -> Draft<'e> {
+    fn new(expr: &'e Expr, same: &'e [u32], leaves: &[Leaf]) -> Draft<'e> {
         let root = Sketch { kind: Kind::Or, children: Vec::new() };
         let (nodes, open) = (vec![root], vec![(expr, false, 0)]);
         let mut draft = Draft { nodes, shared: HashMap::new(), open, same };
@@ -247,6 +264,9 @@ impl<'e> Draft<'e> {
         for node in draft.nodes.iter_mut().filter(|n| n.kind != Kind::Xor) {
             node.children.sort_unstable();
             node.children.dedup();
+            for sense in [false, true] {
+                node.keep_owners(leaves, sense);
+            }
         }
         draft
     }

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::equal::Likeness;
 use super::fitness::{self, Concern, Fitness};
 use super::{ScanReport, complaint, files};
 use crate::cloud::holes::{Hole, holes_by};
@@ -16,6 +17,7 @@ use crate::num::median::median;
 use crate::scene::{Call, MaterialId, ShapeNode, Value};
 use crate::shot::Material;
 use crate::solid::point_set::{Lead, Options, PointSet, Solidity};
+use crate::solid::table::Made;
 use crate::solid::{Body, Counts, Solid, points};
 use crate::source::Span;
 
@@ -64,6 +66,8 @@ pub(super) struct Builder<'a> {
     lines: u64,
     /// By the address of the node, which lives as long as the scene.
     built: HashMap<usize, Built>,
+    /// Solids of closed form by the calls that made them.
+    equal: HashMap<Likeness, Arc<dyn Solid>>,
     scan: Vec<Scan>,
     /// Scans made of scans by moving their boundary, and what they were made by.
     pub moved: Vec<(super::offset::Key, ScanId)>,
@@ -92,6 +96,7 @@ impl<'a> Builder<'a> {
             materials,
             lines,
             built: HashMap::new(),
+            equal: HashMap::new(),
             scan: Vec::new(),
             moved: Vec::new(),
             thick: Vec::new(),
@@ -111,6 +116,19 @@ impl<'a> Builder<'a> {
     pub fn keep(&mut self, node: &ShapeNode, built: Built) -> Built {
         self.built.insert(std::ptr::from_ref(node) as usize, built.clone());
         built
+    }
+
+    /// What a call makes of its arguments alone; calls that say the same make one solid.
+    pub fn exact(&mut self, call: &Call, build: impl Fn(&Call) -> Made) -> Result<Built, Diagnostic> {
+        let likeness = Likeness::of(call);
+        if let Some(known) = likeness.as_ref().and_then(|l| self.equal.get(l)) {
+            return Ok(Built::Exact(known.clone()));
+        }
+        let built = exact(call, build)?;
+        if let (Some(likeness), Built::Exact(solid)) = (likeness, &built) {
+            self.equal.insert(likeness, solid.clone());
+        }
+        Ok(built)
     }
 
     /// The cloud that a call of `points` names.
@@ -349,10 +367,7 @@ impl Solidity {
 }
 
 /// A closed form, or a complaint at its argument.
-pub(super) fn exact(
-    call: &Call,
-    build: impl Fn(&Call) -> Result<Arc<dyn Solid>, crate::scene::BuildError>,
-) -> Result<Built, Diagnostic> {
+pub(super) fn exact(call: &Call, build: impl Fn(&Call) -> Made) -> Result<Built, Diagnostic> {
     build(call).map(Built::Exact).map_err(|e| complaint(call, e))
 }
 

@@ -312,7 +312,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
         };
         let primitive = table::find(&call.word);
         let built = match primitive.map(|p| p.build) {
-            Some(Build::Exact(build)) => exact(call, build)?,
+            Some(Build::Exact(build)) => self.builder.exact(call, build)?,
             Some(Build::Mesh) => self.builder.mesh(call)?,
             Some(Build::Heights) => self.builder.heights(call)?,
             Some(Build::Bounded { by, build }) => {

@@ -8,6 +8,7 @@ mod assets;
 mod bounding;
 mod build;
 mod edits;
+mod equal;
 mod extent;
 mod files;
 mod fitness;

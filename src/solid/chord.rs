@@ -25,17 +25,17 @@ impl Chord {
         }
     }
 
-    /// Whether nothing of the line is inside.
+    /// Whether nothing of the line is inside, for a sound chord.
     #[inline]
     pub fn is_none(&self) -> bool {
-        *self == Chord::NONE
+        self.ends[0] == f64::INFINITY
     }
 
     /// Whether it is what a chord may be: its ends are numbers in order, and no crossing is infinitely far away.
     #[inline]
     pub fn is_sound(&self) -> bool {
         let [lo, hi] = self.ends;
-        lo <= hi && lo < f64::INFINITY && f64::NEG_INFINITY < hi || self.is_none()
+        lo <= hi && lo < f64::INFINITY && f64::NEG_INFINITY < hi || *self == Chord::NONE
     }
 
     /// Whether the line comes from inside.
@@ -48,7 +48,7 @@ impl Chord {
     /// not.
     #[inline]
     pub fn answer(&self, out: &mut Vec<Crossing>) -> Answer {
-        if !self.is_none() {
+        if *self != Chord::NONE {
             let [(lo, enter), (hi, exit)] = [0, 1].map(|end| (self.ends[end], self.parts[end]));
             if lo != f64::NEG_INFINITY {
                 out.push(Crossing::exact(lo, true, enter));
