@@ -50,9 +50,10 @@ impl Ray {
         Ray::new(to_from.transform_point3(self.origin), to_from.transform_vector3(self.dir))
     }
 
-    /// Whether it can be traced: finite, with a direction.
+    /// Whether it can be traced: finite, with a direction whose length has a square.
     #[inline]
     pub fn is_valid(&self) -> bool {
-        self.origin.is_finite() && self.dir.is_finite() && self.dir != DVec3::ZERO
+        let squared = self.dir.length_squared();
+        self.origin.is_finite() && f64::MIN_POSITIVE <= squared && squared < f64::INFINITY
     }
 }

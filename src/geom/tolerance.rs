@@ -27,6 +27,10 @@ pub fn cleanup(scale: f64) -> f64 {
     CLEANUP * EPS * scale
 }
 
+/// A length from here on has a fourth power, as discriminants have, that keeps all its digits, and so has one some tens of
+/// times smaller: 2^-250, where 2^-1022 is the smallest such number.
+pub const SMALLEST: f64 = f64::from_bits((1023 - 250) << 52);
+
 /// Two faces that are meant to coincide stand apart by less than this, world length: 3.6 units of `EPS` times the scale were
 /// seen, a quarter of [`CLEANUP`] is 4. What is thicker and cleaned up all the same is a film that somebody built.
 pub fn film(scale: f64) -> f64 {

@@ -11,6 +11,7 @@ use super::eval::Machine;
 use super::value::{Eval, Located, Val};
 use super::{formula, half_space};
 use crate::diag::{Diagnostic, nearest};
+use crate::geom::tolerance;
 use crate::scene::{Arg, Call, Decl, Kind, Param, Value};
 use crate::source::Span;
 
@@ -98,6 +99,11 @@ fn size(machine: &mut Machine, given: &Located, name: &str) -> Eval<f64> {
             .at(given.at, "no size")
             .help("give it a size, or leave the shape out");
         machine.warnings.push(warning);
+    } else if x < tolerance::SMALLEST {
+        return Err(Diagnostic::error("E0506", format!("`{name}` is too small for its powers to be told"))
+            .at(given.at, format!("{x:e}"))
+            .help("choose smaller units, such as `units(um)`")
+            .into());
     }
     Ok(x)
 }
