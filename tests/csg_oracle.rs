@@ -6,7 +6,7 @@ mod csg_support;
 use csg_support::draws::Draws;
 use csg_support::forest;
 use csg_support::oracle::{End, Oracle, clipped, ends};
-use pss::csg::{Expr, Leaf, Object, Scratch, Spans};
+use pss::csg::{Boundary, Expr, Leaf, Object, Scratch, Spans};
 use pss::geom::{Interval, Ray};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -47,9 +47,12 @@ fn on_all(
         let (mut draws, mut scratch, mut wrong) = (Draws::new(seed), Scratch::default(), Vec::new());
         let (leaves, expr, mut earlier) = tree(&mut draws);
         let object = Object::new(leaves.clone(), &expr);
+        let exact = leaves.iter().all(|leaf| leaf.solid.shift_bound() == 0.0);
+        let apart = exact.then(|| Object::new(leaves.iter().map(forest::slow).collect(), &expr));
+        let apart = apart.as_ref();
         for i in 0..rays {
             let ray = forest::ray(&mut draws, &mut earlier);
-            let case = Case { object: &object, leaves: &leaves, expr: &expr, ray };
+            let case = Case { object: &object, apart, leaves: &leaves, expr: &expr, ray };
             if let Err(message) = check(&mut draws, &case, &mut scratch) {
                 let raw = Oracle::new(&leaves, &expr, &ray).told();
                 wrong.push(format!("tree {seed} ray {i}: {message}\n{raw}\n{ray:?}\n{expr:?}"));
@@ -63,6 +66,8 @@ fn on_all(
 
 struct Case<'a> {
     object: &'a Object,
+    /// The same of leaves that are not known to be alike, nor of closed form; where none of them moves its boundary.
+    apart: Option<&'a Object>,
     leaves: &'a [Leaf],
     expr: &'a Expr,
     ray: Ray,
@@ -70,6 +75,13 @@ struct Case<'a> {
 
 fn same<T: PartialEq + std::fmt::Debug>(what: &str, have: T, want: T) -> Result<(), String> {
     if have == want { Ok(()) } else { Err(format!("{what}\n have {have:?}\n want {want:?}")) }
+}
+
+/// A boundary as it shows: of two leaves alike either may stand for what fills.
+fn shown(found: Option<(Boundary, bool)>, leaves: &[Leaf]) -> Option<(Boundary, Option<u32>, bool)> {
+    let (boundary, entering) = found?;
+    let fills = boundary.filler.and_then(|leaf| leaves[leaf as usize].material);
+    Some((Boundary { filler: None, ..boundary }, fills, entering))
 }
 
 /// FEATURES 88 and B18: lazy equals brute force, shape, owner and side; and so does culling equal asking everything.
@@ -110,12 +122,75 @@ fn law_89_91_ranges_clip_the_list_and_first_is_its_first_end() {
             case.object.spans(&case.ray, range, scratch, &mut list);
             let end = list.first().and_then(|s| s.enter.map(|b| (b, true)).or(s.exit.map(|b| (b, false))));
             same("first boundary", first, end)?;
+            if let Some(apart) = case.apart {
+                let other = apart.first(&case.ray, range, scratch);
+                same("first boundary, none merged", shown(first, case.leaves), shown(other, case.leaves))?;
+            }
             let first = first.map(|(b, entering)| ((b.t, b.leaf, b.flipped), entering));
             let entering = want.iter().flat_map(|s| [s[0].map(|e| (e, true)), s[1].map(|e| (e, false))]);
             same("first", first, entering.flatten().next())?;
         }
         Ok(())
     });
+}
+
+/// Intersections of many convex leaves, some of them shared by two, have a way of their own: spans, ranges, first and any.
+#[test]
+fn law_88_89_91_intersections_of_many_are_those_of_brute_force() {
+    let met = AtomicU64::new(0);
+    let wrong: Vec<String> = (0..TREES)
+        .into_par_iter()
+        .filter_map(|seed| {
+            let (mut draws, mut scratch) = (Draws::new(seed ^ 0xc0), Scratch::default());
+            let mut earlier = Vec::new();
+            let count = 7 + draws.below(30);
+            let mut leaves: Vec<Leaf> =
+                (0..count).map(|i| forest::plain_leaf(&mut draws, &mut earlier, i as u64)).collect();
+            if draws.chance(0.3) {
+                leaves[0] = Leaf { rank: 0, ..leaves[count - 1].clone() };
+            }
+            let expr = Expr::And((0..count as u32).map(Expr::Leaf).collect());
+            let object = Object::new(leaves.clone(), &expr);
+            // The same the long way, which tells normals and fillers too.
+            let long = Object::new(leaves.iter().map(forest::slow).collect(), &expr);
+            for _ in 0..RAYS / 2 {
+                let ray = forest::ray(&mut draws, &mut earlier);
+                let all = Oracle::new(&leaves, &expr, &ray).spans();
+                let mut at = || ray_place(&mut draws, &all);
+                let (a, b) = (at(), at());
+                for range in [Interval::ALL, Interval::AHEAD, Interval::new(a.min(b), a.max(b))] {
+                    let oracle = Oracle::new(&leaves, &expr, &ray);
+                    if [range.lo, range.hi].into_iter().any(|t| t.is_finite() && oracle.near_a_change(t)) {
+                        continue;
+                    }
+                    let want = clipped(&all, range);
+                    met.fetch_add(want.len() as u64, Ordering::Relaxed);
+                    let ends = want.iter().flat_map(|s| [s[0].map(|e| (e, true)), s[1].map(|e| (e, false))]);
+                    let first = object.first(&ray, range, &mut scratch);
+                    let other = shown(long.first(&ray, range, &mut scratch), &leaves);
+                    let told = same("boundary", shown(first, &leaves), other);
+                    let first = first.map(|(b, entering)| ((b.t, b.leaf, b.flipped), entering));
+                    let found = told
+                        .and(same("spans", spans(&object, &ray, range, &mut scratch), want.clone()))
+                        .and(same("first", first, ends.flatten().next()))
+                        .and(same("any", object.any(&ray, range, &mut scratch), !want.is_empty()));
+                    if let Err(message) = found {
+                        return Some(format!("tree {seed}: {message}\n{range:?} {ray:?}"));
+                    }
+                }
+            }
+            None
+        })
+        .collect();
+    assert!(wrong.is_empty(), "{} wrong, the first:\n{}", wrong.len(), wrong[0]);
+    assert!(100_000 < met.into_inner(), "too few were met");
+}
+
+/// A place near an end, or anywhere.
+fn ray_place(draws: &mut Draws, all: &[[End; 2]]) -> f64 {
+    let known: Vec<f64> = all.iter().flatten().flatten().map(|e| e.0).collect();
+    let near = if known.is_empty() { 0.0 } else { draws.pick(&known) };
+    near + draws.between(-1.0, 1.0)
 }
 
 /// A range that ends at a boundary of the list: the low end is before the range, the high end in it.

@@ -325,10 +325,7 @@ impl<'a> Look<'a> {
         let (core, hits) = (self.core, self.room.few.hits());
         let t = hits[turn.from].t;
         let slope = self.ray.dir.dot(normal).abs();
-        // No less than the lengths that the long way takes.
-        let length = |v: DVec3| v.abs().element_sum();
-        let (scale, point) = (core.bound.scale.max(length(self.ray.origin)), length(self.ray.at(t)));
-        let reach = 2.0 * core.bound.shift + tolerance::cleanup(scale) + tolerance::cleanup(point);
+        let reach = reach_at(core, self.ray, t);
         // Of lengths along the normal: a product sooner than a quotient by a slope, which may be none.
         let is_far = |lo: f64, hi: f64| 2.0 * reach < (hi - lo) * slope;
         let before = turn.from == 0 || is_far(hits[turn.from - 1].t, t);
@@ -358,6 +355,14 @@ impl<'a> Look<'a> {
         let normal = if flipped { -normal } else { normal };
         Boundary { t: crossing.t, leaf: core.first(leaf), crossing, normal, flipped, filler }
     }
+}
+
+/// A length that no clean-up about a crossing at `t` reaches: of no less than the lengths that the long way takes.
+#[inline(always)]
+pub(super) fn reach_at(core: &Core, ray: &Ray, t: f64) -> f64 {
+    let length = |v: DVec3| v.abs().element_sum();
+    let (scale, point) = (core.bound.scale.max(length(ray.origin)), length(ray.at(t)));
+    2.0 * core.bound.shift + tolerance::cleanup(scale) + tolerance::cleanup(point)
 }
 
 /// A leaf comes in sight. A closed form is asked sooner than its box is tried.

@@ -4,6 +4,7 @@
 mod bundle;
 mod cleanup;
 mod clip;
+mod convex;
 mod expr;
 mod few;
 mod group;

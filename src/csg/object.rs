@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::bundle::Bundle;
 use super::cleanup::{Bound, Cleaner};
+use super::convex::Convex;
 use super::expr::Expr;
 use super::few::Look;
 use super::hierarchy::{Hierarchy, worst_condition};
@@ -41,6 +42,8 @@ pub(super) struct Core {
     pub costs: Vec<Cost>,
     /// All leaves, where they are few and of closed form.
     pub few: Option<All>,
+    /// What the object is where it is the intersection of more leaves.
+    convex: Option<Convex>,
     /// For each leaf [`Leaf::scale`].
     pub scales: Vec<f64>,
     pub bound: Bound,
@@ -78,6 +81,7 @@ impl Core {
         let reaches = reaches(&tree);
         let outside = State::outside(&tree);
         let few = All::new(&tree, &costs, &reaches, &outside);
+        let convex = if few.is_none() { Convex::new(&tree, &costs, expr) } else { None };
         let hierarchy = Hierarchy::new(reaches, condition);
         let id = NEXT.fetch_add(1, Ordering::Relaxed);
         Core {
@@ -87,6 +91,7 @@ impl Core {
             outside,
             costs,
             few,
+            convex,
             scales,
             bound,
             bounds,
@@ -222,6 +227,11 @@ impl Object {
         scratch: &mut Scratch,
     ) -> Option<(Boundary, bool)> {
         debug_assert!(0.0 <= range.lo || bundle.few(&self.core).is_none());
+        if let Some(convex) = &self.core.convex
+            && let Some(found) = convex.first(&self.core, ray, range, scratch)
+        {
+            return found;
+        }
         if let Some(found) = Look::new(&self.core, ray, range, bundle, scratch).and_then(Look::first) {
             return found;
         }
@@ -232,6 +242,11 @@ impl Object {
     /// not resolve there ([`crate::solid::Solid::grain`]) does not count.
     #[inline]
     pub fn any(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> bool {
+        if let Some(convex) = &self.core.convex
+            && let Some(found) = convex.any(&self.core, ray, range, scratch)
+        {
+            return found;
+        }
         if let Some(found) =
             Look::new(&self.core, ray, range, &Bundle::default(), scratch).and_then(Look::any)
         {
@@ -242,6 +257,11 @@ impl Object {
 
     /// All spans, cut to the range: an end is `None` where the range ends first.
     pub fn spans(&self, ray: &Ray, range: Interval, scratch: &mut Scratch, out: &mut Spans) {
+        if let Some(convex) = &self.core.convex
+            && let Some(found) = convex.span(&self.core, ray, range, scratch)
+        {
+            return out.extend(found);
+        }
         let mut cleaner = self.cleaner(ray, range, scratch);
         while let Some(span) = cleaner.span() {
             out.push(span);

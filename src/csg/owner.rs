@@ -149,7 +149,7 @@ pub(super) fn filling(sweep: &mut Sweep<'_>, t: f64) -> Option<(u64, u32)> {
             continue;
         }
         let own = match &leaf.group {
-            None => Some((leaf.rank, 0)),
+            None => Some((core.tree.last[index as usize], 0)),
             Some(group) => {
                 let local = sweep.local(met);
                 leaf.ask_group(group, sweep.scratch, |group, scratch| group.filler(&local, t, scratch))

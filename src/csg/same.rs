@@ -13,9 +13,10 @@ pub(super) fn first_of_same(leaves: &[Leaf]) -> Vec<u32> {
     leaves.iter().zip(0..).map(|(leaf, i)| *known.entry(identity(leaf)).or_insert(i)).collect()
 }
 
-/// Of leaves that stand side by side in a union or an intersection, all in one sense, and are alike in all but their names and
-/// ranks, keeps the one that owns what they share: whatever changes with one changes with the other.
-pub(super) fn keep_owners(leaves: &[Leaf], side_by_side: &mut Vec<u32>) {
+/// Of leaves that stand side by side in a union or an intersection, all in one sense and nowhere else, and are alike in all
+/// but their names and ranks, keeps the one that owns what they share: whatever changes with one changes with the other.
+/// `last` holds for each leaf the rank by which it fills: that of the last of those that it now stands for.
+pub(super) fn keep_owners(leaves: &[Leaf], side_by_side: &mut Vec<u32>, last: &mut [u64]) {
     let mut owners = HashMap::with_capacity(side_by_side.len());
     let owner_key = |leaf: u32| (leaves[leaf as usize].key(), leaf);
     for &leaf in side_by_side.iter() {
@@ -24,7 +25,11 @@ pub(super) fn keep_owners(leaves: &[Leaf], side_by_side: &mut Vec<u32>) {
             *owner = leaf;
         }
     }
-    side_by_side.retain(|leaf| owners[&likeness(&leaves[*leaf as usize])] == *leaf);
+    side_by_side.retain(|leaf| {
+        let owner = owners[&likeness(&leaves[*leaf as usize])];
+        last[owner as usize] = last[owner as usize].max(last[*leaf as usize]);
+        owner == *leaf
+    });
 }
 
 /// All that makes an answer of a leaf, and how it counts among those that share a face.
@@ -80,8 +85,8 @@ mod tests {
             Leaf { cutter: true, ..ranked(1) },
             Leaf { material: Some(1), ..ranked(2) },
         ];
-        let mut all = vec![0, 1, 2, 3, 4];
-        keep_owners(&leaves, &mut all);
-        assert_eq!(all, [1, 3, 4]);
+        let (mut all, mut last) = (vec![0, 1, 2, 3, 4], [5, 3, 4, 1, 2]);
+        keep_owners(&leaves, &mut all, &mut last);
+        assert_eq!((all, [last[1], last[3], last[4]]), (vec![1, 3, 4], [5, 1, 4]));
     }
 }

@@ -218,7 +218,7 @@ impl Room {
         self.few.put(core, mask, &mut self.here);
         let state = &self.here;
         let fill = inside.filter(can).filter(|leaf| state.fills(&core.tree, *leaf as usize));
-        fill.max_by_key(|leaf| (leaves[*leaf as usize].rank, *leaf)).map(|leaf| core.first(leaf))
+        fill.max_by_key(|leaf| (core.tree.last[*leaf as usize], *leaf)).map(|leaf| core.first(leaf))
     }
 }
 

@@ -107,6 +107,8 @@ pub struct Tree {
     /// For each leaf, whether it is negated on its way to the root; `None` where an exclusion or uses of both kinds
     /// leave that open.
     pub(super) negated: Vec<Option<bool>>,
+    /// For each leaf the rank by which it fills ([`keep_owners`]).
+    pub(super) last: Vec<u64>,
 }
 
 impl Default for Tree {
@@ -143,6 +145,7 @@ impl Tree {
             node_ups: Lists::new(nodes.len(), node_ups),
             leaf_ups: Lists::new(leaves.len(), leaf_ups),
             negated: Vec::new(),
+            last: draft.last,
             node_up: Vec::new(),
             leaf_up: Vec::new(),
             stems: Stems::default(),
@@ -224,23 +227,6 @@ struct Sketch {
     children: Vec<(Child, bool)>,
 }
 
-impl Sketch {
-    /// Of leaves alike that stand here in one sense one is kept.
-    fn keep_owners(&mut self, leaves: &[Leaf], sense: bool) {
-        let leaf = |(child, not): &(Child, bool)| match child {
-            Child::Leaf(leaf) if *not == sense => Some(*leaf),
-            _ => None,
-        };
-        let mut own: Vec<u32> = self.children.iter().filter_map(leaf).collect();
-        let count = own.len();
-        keep_owners(leaves, &mut own);
-        if own.len() < count {
-            let mut kept = own.into_iter().peekable();
-            self.children.retain(|child| leaf(child).is_none_or(|l| kept.next_if_eq(&l).is_some()));
-        }
-    }
-}
-
 /// Nodes with lists of their children; the root is the first.
 struct Draft<'e> {
     nodes: Vec<Sketch>,
@@ -250,13 +236,16 @@ struct Draft<'e> {
     open: Vec<(&'e Expr, bool, u32)>,
     /// For each leaf the first that is the same.
     same: &'e [u32],
+    /// For each leaf the rank by which it fills.
+    last: Vec<u64>,
 }
 
 impl<'e> Draft<'e> {
     fn new(expr: &'e Expr, same: &'e [u32], leaves: &[Leaf]) -> Draft<'e> {
         let root = Sketch { kind: Kind::Or, children: Vec::new() };
         let (nodes, open) = (vec![root], vec![(expr, false, 0)]);
-        let mut draft = Draft { nodes, shared: HashMap::new(), open, same };
+        let last = leaves.iter().map(|leaf| leaf.rank).collect();
+        let mut draft = Draft { nodes, shared: HashMap::new(), open, same, last };
         while let Some((expr, not, above)) = draft.open.pop() {
             draft.place(expr, not, above);
         }
@@ -264,11 +253,32 @@ impl<'e> Draft<'e> {
         for node in draft.nodes.iter_mut().filter(|n| n.kind != Kind::Xor) {
             node.children.sort_unstable();
             node.children.dedup();
+        }
+        draft.keep_owners(leaves);
+        draft
+    }
+
+    /// Of leaves alike that stand side by side one is kept.
+    fn keep_owners(&mut self, leaves: &[Leaf]) {
+        let mut uses = vec![0u32; leaves.len()];
+        let children = self.nodes.iter().flat_map(|node| &node.children);
+        children.for_each(|(child, _)| {
+            if let Child::Leaf(leaf) = child {
+                uses[*leaf as usize] += 1;
+            }
+        });
+        for node in self.nodes.iter_mut().filter(|n| n.kind != Kind::Xor) {
             for sense in [false, true] {
-                node.keep_owners(leaves, sense);
+                let leaf = |(child, not): &(Child, bool)| match child {
+                    Child::Leaf(leaf) if *not == sense && uses[*leaf as usize] == 1 => Some(*leaf),
+                    _ => None,
+                };
+                let mut own: Vec<u32> = node.children.iter().filter_map(leaf).collect();
+                keep_owners(leaves, &mut own, &mut self.last);
+                let mut kept = own.into_iter().peekable();
+                node.children.retain(|child| leaf(child).is_none_or(|l| kept.next_if_eq(&l).is_some()));
             }
         }
-        draft
     }
 
     fn place(&mut self, expr: &'e Expr, not: bool, above: u32) {

@@ -82,6 +82,33 @@ pub fn leaf(draws: &mut Draws, earlier: &mut Vec<f64>, rank: u64) -> Leaf {
     leaf
 }
 
+/// The leaf, but that it does not say that it is of closed form.
+pub fn slow(leaf: &Leaf) -> Leaf {
+    Leaf { solid: Arc::new(Slow(leaf.solid.clone())), ..leaf.clone() }
+}
+
+/// A half-space that holds the origin well, or a ball or a box around it, in its place or turned.
+pub fn plain_leaf(draws: &mut Draws, earlier: &mut Vec<f64>, rank: u64) -> Leaf {
+    let solid: Arc<dyn Solid> = match draws.below(8) {
+        0 => Arc::new(Sphere { center: draws.direction(), radii: DVec3::splat(draws.between(2.0, 4.0)) }),
+        1 => {
+            let half = DVec3::splat(draws.pick(&[1.0, 1.5, 2.0]));
+            Arc::new(Block(Aabb { min: -half, max: half }))
+        }
+        _ => {
+            let normal = if draws.chance(0.3) { draws.pick(&DVec3::AXES) } else { draws.direction() };
+            let offset =
+                if draws.chance(0.5) { draws.pick(&[1.0, 1.5, 2.0]) } else { draws.between(0.8, 2.0) };
+            Arc::new(HalfSpace { normal, offset })
+        }
+    };
+    let turn = DAffine3::from_axis_angle(draws.pick(&DVec3::AXES), draws.pick(&[0.0, 0.0, 0.5, 0.3]) * PI);
+    earlier.push(draws.between(-1.0, 1.0));
+    let mut leaf = Leaf::new(solid, Placement::new(turn).unwrap_or(Placement::IDENTITY));
+    (leaf.rank, leaf.material) = (rank, draws.chance(0.5).then(|| draws.below(4) as u32));
+    leaf
+}
+
 fn solid(draws: &mut Draws, earlier: &mut Vec<f64>) -> Arc<dyn Solid> {
     let radius = |d: &mut Draws, e: &mut Vec<f64>| d.coordinate(e).abs().max(1e-3);
     match draws.below(6) {
