@@ -10,21 +10,22 @@ use crate::table::Row;
 
 const ROUNDS: usize = 7;
 
-fn folder() -> PathBuf {
+/// Where files are written.
+pub fn folder() -> PathBuf {
     let folder = std::env::temp_dir().join("pss_csg_bench");
     std::fs::create_dir_all(&folder).expect("a folder for temporary files");
     folder
 }
 
 /// Writes a scene; its path.
-fn scene(name: &str, text: &str) -> PathBuf {
+pub fn scene(name: &str, text: &str) -> PathBuf {
     let path = folder().join(name);
     std::fs::write(&path, text).expect("a file in the folder for temporary files");
     path
 }
 
 /// The command that renders a scene.
-fn pss(scene: &Path, more: &str) -> String {
+pub fn pss(scene: &Path, more: &str) -> String {
     let (program, out) = (env!("CARGO_BIN_EXE_pss"), folder().join("out.png"));
     format!("{program} render {} -o {} -t 1 --quiet {more}", scene.display(), out.display())
 }
@@ -115,16 +116,30 @@ pub fn instances(rows: &mut Vec<Row>) {
 }
 
 /// Whether a program can be run.
-fn is_there(program: &str) -> bool {
+pub fn is_there(program: &str) -> bool {
     Command::new("sh")
         .args(["-c", &format!("command -v {program}")])
         .output()
         .is_ok_and(|o| o.status.success())
 }
 
+/// Where scenes are kept for this program and others.
+pub fn kit() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/peers")
+}
+
+/// One of them as a scene of this program; `None` where it is not there.
+pub fn peer_scene(name: &str) -> Option<PathBuf> {
+    let (kit, out) = (kit(), folder().join(format!("{name}.pss")));
+    let convert = format!("python3 {0}/json2pss.py {0}/json/{name}.json > {1}", kit.display(), out.display());
+    let converted =
+        kit.is_dir() && Command::new("sh").args(["-c", &convert]).status().is_ok_and(|s| s.success());
+    converted.then_some(out)
+}
+
 /// The scenes that are kept for both programs, beside POV-Ray.
 pub fn peers(rows: &mut Vec<Row>) {
-    let kit = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/peers");
+    let kit = kit();
     if !kit.is_dir() || !is_there("povray") || !is_there("python3") {
         eprintln!("skipped: POV-Ray, Python or ../shared/peers is not there");
         return;
@@ -132,14 +147,10 @@ pub fn peers(rows: &mut Vec<Row>) {
     for (name, asked) in
         [("s1_die", ">= 1.5"), ("s7a_coincident", ">= 1.5"), ("s2_plate", ">= 15"), ("s3_menger", ">= 15")]
     {
-        let out = folder().join(format!("{name}.pss"));
-        let convert =
-            format!("python3 {0}/json2pss.py {0}/json/{name}.json > {1}", kit.display(), out.display());
-        let converted = Command::new("sh").args(["-c", &convert]).status().is_ok_and(|s| s.success());
-        if !converted {
+        let Some(out) = peer_scene(name) else {
             eprintln!("skipped: {name} could not be converted");
             continue;
-        }
+        };
         let other = format!("povray +I{}/pov/{name}.pov +W800 +H600 -D -A +WT1 -F -GA", kit.display());
         let [ours, theirs] = seconds([&pss(&out, "--size 800x600"), &other]).map(|s| s.unwrap_or(f64::NAN));
         rows.push(Row::new(format!("{name}, 800 x 600"), ours, "CPU s", ""));

@@ -3,12 +3,13 @@
 
 mod clock;
 mod commands;
+mod pixels;
 mod rays;
 mod table;
 
 use table::Part;
 
-const PARTS: [Part; 7] = [
+const PARTS: [Part; 9] = [
     ("two_leaves", rays::two_leaves),
     ("chain", rays::chain),
     ("lattice", rays::lattice),
@@ -16,6 +17,8 @@ const PARTS: [Part; 7] = [
     ("plates", commands::plates),
     ("instances", commands::instances),
     ("peers", commands::peers),
+    ("scales", pixels::scales),
+    ("artefacts", pixels::artefacts),
 ];
 
 fn main() {

@@ -9,6 +9,9 @@ use super::leaf::Leaf;
 
 /// For each leaf the first that is the same.
 pub(super) fn first_of_same(leaves: &[Leaf]) -> Vec<u32> {
+    if !share_a_solid(leaves.iter()) {
+        return (0..leaves.len() as u32).collect();
+    }
     let mut known = HashMap::with_capacity(leaves.len());
     leaves.iter().zip(0..).map(|(leaf, i)| *known.entry(identity(leaf)).or_insert(i)).collect()
 }
@@ -17,6 +20,9 @@ pub(super) fn first_of_same(leaves: &[Leaf]) -> Vec<u32> {
 /// but their names and ranks, keeps the one that owns what they share: whatever changes with one changes with the other.
 /// `last` holds for each leaf the rank by which it fills: that of the last of those that it now stands for.
 pub(super) fn keep_owners(leaves: &[Leaf], side_by_side: &mut Vec<u32>, last: &mut [u64]) {
+    if !share_a_solid(side_by_side.iter().map(|leaf| &leaves[*leaf as usize])) {
+        return;
+    }
     let mut owners = HashMap::with_capacity(side_by_side.len());
     let owner_key = |leaf: u32| (leaves[leaf as usize].key(), leaf);
     for &leaf in side_by_side.iter() {
@@ -39,13 +45,23 @@ fn identity(leaf: &Leaf) -> impl Eq + Hash + use<'_> {
 
 /// All that makes an answer of a leaf, and how it shows.
 fn likeness(leaf: &Leaf) -> impl Eq + Hash + use<> {
-    // Instances share the object, each in a solid of its own.
-    let solid = match &leaf.group {
+    let place = leaf.place.world_from_local.to_cols_array().map(f64::to_bits);
+    (solid(leaf), place, leaf.material, leaf.cutter)
+}
+
+/// The address of what a leaf places: instances share the object, each in a solid of its own.
+fn solid(leaf: &Leaf) -> *const () {
+    match &leaf.group {
         Some(group) => group.0.address(),
         None => Arc::as_ptr(&leaf.solid).cast::<()>(),
-    };
-    let place = leaf.place.world_from_local.to_cols_array().map(f64::to_bits);
-    (solid, place, leaf.material, leaf.cutter)
+    }
+}
+
+/// Whether any two leaves place one solid; mostly none do, and nothing more needs to be compared.
+fn share_a_solid<'a>(leaves: impl Iterator<Item = &'a Leaf>) -> bool {
+    let mut solids: Vec<*const ()> = leaves.map(solid).collect();
+    solids.sort_unstable();
+    solids.windows(2).any(|pair| pair[0] == pair[1])
 }
 
 #[cfg(test)]

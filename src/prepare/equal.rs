@@ -13,7 +13,9 @@ pub(super) struct Likeness {
 impl Likeness {
     /// `None` where an argument is more than numbers: a file, a shape, a formula.
     pub fn of(call: &Call) -> Option<Likeness> {
-        let mut like = Likeness { words: call.word.clone(), numbers: Vec::new() };
+        // Room for what most calls say.
+        let mut like = Likeness { words: String::with_capacity(32), numbers: Vec::with_capacity(16) };
+        like.words.push_str(&call.word);
         for (name, arg) in &call.args {
             like.words.push(' ');
             like.words.push_str(name);
