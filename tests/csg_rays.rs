@@ -148,7 +148,7 @@ fn b11_b12_b15_joints_leave_neither_film_nor_crack() {
         "draw ((box([-1, -1, -1], [1, 1, 1]) - cylinder(r: 0.5, from: [0, 0, -1], to: [0, 0, 1])) | cylinder(r: 0.5, from: [0, 0, -1], to: [0, 0, 1]))",
     );
     let block = shot("draw box([-1, -1, -1], [1, 1, 1])");
-    for ray in rays(20_000) {
+    for ray in rays(1_000_000) {
         let mut of = |shot: &Shot| ends(&spans(shot, &ray, &mut scratch));
         let (floor, bare, plain, fit, block) = (of(&floor), of(&bare), of(&plain), of(&fit), of(&block));
         assert!(floor.len() <= 2, "B11: {floor:?} {ray:?}");

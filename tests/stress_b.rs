@@ -8,13 +8,12 @@ use csg_support::scene::{errors, prepared, shot, spans};
 use glam::DVec3;
 use pss::csg::Scratch;
 use pss::geom::Ray;
+use rayon::prelude::*;
 
 type Box3 = [[f64; 3]; 2];
 
-/// Rays for each pair of operators, bracketing and number of faces shared: as many as the list asks for with `PSS_LONG=1`.
-fn rays() -> usize {
-    if std::env::var_os("PSS_LONG").is_some() { 100_000 } else { 3_000 }
-}
+/// Rays for each pair of operators, bracketing and number of faces shared.
+const RAYS: usize = 100_000;
 
 /// An operator's sign and what it makes of two truths.
 type Operator = (&'static str, fn(bool, bool) -> bool);
@@ -65,35 +64,42 @@ fn pieces(ray: &Ray, all: &[Box3; 3], truth: impl Fn([bool; 3]) -> bool) -> Vec<
     pieces
 }
 
-#[test]
-fn b6_every_pair_of_operators_follows_its_truth_table() {
-    let (mut scratch, mut draws, mut met, mut wrong) = (Scratch::default(), Draws::new(6), 0, Vec::new());
-    let cells = [1, 2, 6].into_iter().flat_map(|shared| (0..32).map(move |cell| (shared, cell)));
-    for (shared, cell) in cells {
-        let all = boxes(shared);
-        let [(one, f), (two, g)] = [OPERATORS[cell % 4], OPERATORS[cell / 4 % 4]];
-        let [x, y, z] = all.each_ref().map(written);
-        let first = cell < 16;
-        let text =
-            if first { format!("({x} {one} {y}) {two} {z}") } else { format!("{x} {one} ({y} {two} {z})") };
-        let truth = |[x, y, z]: [bool; 3]| if first { g(f(x, y), z) } else { f(x, g(y, z)) };
-        let shot = shot(&format!("draw {text}"));
-        for _ in 0..rays() {
-            let from = 3.0 * draws.direction() + 0.5;
-            let to = DVec3::from_array(std::array::from_fn(|_| draws.between(-0.6, 1.6)));
-            let ray = Ray::new(from, to - from);
-            let want = pieces(&ray, &all, truth);
-            let have: Vec<[f64; 2]> =
-                spans(&shot, &ray, &mut scratch).iter().map(|s| [s.interval().lo, s.interval().hi]).collect();
-            met += want.len();
-            let near = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) <= 1e-12;
-            if want.len() != have.len() || !want.iter().zip(&have).all(|(a, b)| near(a, b)) {
-                wrong.push(format!("{text}, {shared} faces shared: {want:?}, not {have:?} on {ray:?}"));
-            }
+/// What the rays of one cell of the table meet, and what is wrong.
+fn cell(shared: usize, cell: usize) -> (usize, Vec<String>) {
+    let (mut scratch, mut met, mut wrong) = (Scratch::default(), 0, Vec::new());
+    let mut draws = Draws::new((6 + 32 * shared + cell) as u64);
+    let all = boxes(shared);
+    let [(one, f), (two, g)] = [OPERATORS[cell % 4], OPERATORS[cell / 4 % 4]];
+    let [x, y, z] = all.each_ref().map(written);
+    let first = cell < 16;
+    let text =
+        if first { format!("({x} {one} {y}) {two} {z}") } else { format!("{x} {one} ({y} {two} {z})") };
+    let truth = |[x, y, z]: [bool; 3]| if first { g(f(x, y), z) } else { f(x, g(y, z)) };
+    let shot = shot(&format!("draw {text}"));
+    for _ in 0..RAYS {
+        let from = 3.0 * draws.direction() + 0.5;
+        let to = DVec3::from_array(std::array::from_fn(|_| draws.between(-0.6, 1.6)));
+        let ray = Ray::new(from, to - from);
+        let want = pieces(&ray, &all, truth);
+        let have: Vec<[f64; 2]> =
+            spans(&shot, &ray, &mut scratch).iter().map(|s| [s.interval().lo, s.interval().hi]).collect();
+        met += want.len();
+        let near = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) <= 1e-12;
+        if want.len() != have.len() || !want.iter().zip(&have).all(|(a, b)| near(a, b)) {
+            wrong.push(format!("{text}, {shared} faces shared: {want:?}, not {have:?} on {ray:?}"));
         }
     }
-    println!("{met} pieces on {} rays", 96 * rays());
-    assert!(met > 10 * rays(), "{met}");
+    (met, wrong)
+}
+
+#[test]
+fn b6_every_pair_of_operators_follows_its_truth_table() {
+    let cells: Vec<(usize, usize)> =
+        [1, 2, 6].into_iter().flat_map(|shared| (0..32).map(move |i| (shared, i))).collect();
+    let told: Vec<_> = cells.into_par_iter().map(|(shared, i)| cell(shared, i)).collect();
+    let met: usize = told.iter().map(|t| t.0).sum();
+    assert!(met > 10 * RAYS, "{met}");
+    let wrong: Vec<&String> = told.iter().flat_map(|t| &t.1).collect();
     assert!(wrong.is_empty(), "{} wrong, the first: {}", wrong.len(), wrong[0]);
 }
 
