@@ -79,6 +79,33 @@ fn guides_and_patches_are_made_only_where_rays_come_and_patches_only_where_many_
 }
 
 #[test]
+fn layers_are_kept_only_where_a_file_holds_them() {
+    let folder = Folder::new();
+    let kept = |aov: &str, out: &str| {
+        folder
+            .write("scene.pss", format!("draw sphere(r: 1)\n{VIEW}render(size: [16, 16], samples: 1{aov})"));
+        let ran = folder.run(&["render", "scene.pss", "-o", out, "--quiet", "--stats-json", "stats.json"]);
+        assert_eq!(ran.code, 0, "{}", ran.stderr);
+        number(&serde_json::from_slice(&folder.read("stats.json")).unwrap(), "/layers")
+    };
+    let asked = ", aov: [\"depth\", \"normal\"]";
+    assert_eq!(kept("", "out.exr"), 0, "none asked for");
+    assert_eq!(kept(asked, "out.png"), 0, "the file holds colour alone");
+    assert_eq!(kept(asked, "out.exr"), 2);
+}
+
+#[test]
+fn the_time_of_reading_files_is_told_apart() {
+    let folder = clouds();
+    let seconds = |scene: &str| {
+        let stats = stats(&folder, &format!("{scene}\n{VIEW}render(size: [16, 16], samples: 1)"));
+        stats.pointer("/stages/load").and_then(Value::as_f64).unwrap()
+    };
+    assert_eq!(seconds("draw sphere(r: 1)"), 0.0);
+    assert!(0.0 < seconds("draw points(\"with.ply\")"));
+}
+
+#[test]
 fn shadow_rays_go_only_towards_lights_that_can_contribute() {
     let folder = clouds();
     let scene = |light: &str, integrator: &str| {

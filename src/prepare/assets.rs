@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Instant;
 
 use super::build::{Builder, Built, file_complaint};
 use crate::cloud::CloudError;
@@ -25,7 +26,9 @@ impl Builder<'_> {
         };
         let at = call.place("file");
         let path = self.input(text, base, *from_command_line, at)?;
+        let begin = Instant::now();
         let (made, notes) = read(&path).map_err(|e| file_complaint(at, &format!("`{text}`"), e, usual))?;
+        self.loading += begin.elapsed();
         self.noted(text, &notes, at);
         Ok(made)
     }

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use super::equal::Likeness;
 use super::fitness::{self, Concern, Fitness};
@@ -77,6 +78,8 @@ pub(super) struct Builder<'a> {
     pub warnings: Vec<Diagnostic>,
     /// Files that were read.
     pub inputs: Vec<PathBuf>,
+    /// Time spent on reading them.
+    pub loading: Duration,
     /// The work of measuring.
     pub counts: Counts,
     /// What was found about each scan.
@@ -102,6 +105,7 @@ impl<'a> Builder<'a> {
             thick: Vec::new(),
             warnings: Vec::new(),
             inputs: Vec::new(),
+            loading: Duration::ZERO,
             counts: Counts::default(),
             scans: Vec::new(),
         }
@@ -138,8 +142,10 @@ impl<'a> Builder<'a> {
             return Err(error.help("write `points(\"scan.ply\")` or `points(sphere(r: 1), samples: 2000)`"));
         };
         let path = self.input(text, base, *from_command_line, call.place("source"))?;
+        let begin = Instant::now();
         let cloud = ply::read_path_as(&path, self.options.cut)
             .map_err(|e| cloud_complaint(call, &format!("`{text}`"), e))?;
+        self.loading += begin.elapsed();
         self.noted(text, &cloud.notes, call.place("source"));
         Ok(cloud)
     }

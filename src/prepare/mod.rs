@@ -22,6 +22,7 @@ mod samples;
 pub mod survey;
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use crate::cloud::ply::Cut;
 use crate::csg::{Expr, Object};
@@ -70,6 +71,8 @@ pub struct Prepared {
     pub warnings: Vec<Diagnostic>,
     /// Files that were read.
     pub inputs: Vec<PathBuf>,
+    /// Time spent on reading them.
+    pub loading: Duration,
     /// The work of measuring and sampling.
     pub counts: Counts,
     /// What was found about each scan.
@@ -121,10 +124,10 @@ pub fn prepare(scene: &Scene, options: &Options) -> Result<Prepared, Vec<Diagnos
         return Err(errors);
     };
     let scans = builder.reports();
-    let Builder { warnings, inputs, counts, .. } = builder;
+    let Builder { warnings, inputs, loading, counts, .. } = builder;
     let camera = chosen.unwrap_or_else(|| Camera::fit(world.bounds()));
     let shot = Shot { world, camera, lights, materials, settings };
-    Ok(Prepared { shot, warnings, inputs, counts, scans, outline })
+    Ok(Prepared { shot, warnings, inputs, loading, counts, scans, outline })
 }
 
 fn keep<T>(errors: &mut Vec<Diagnostic>, result: Result<T, Diagnostic>) -> Option<T> {

@@ -29,6 +29,8 @@ pub struct Loaded {
     pub parsing: Duration,
     /// Building what it says.
     pub preparing: Duration,
+    /// Time spent on reading the files that the scene names, while it is prepared.
+    pub loading: Duration,
     /// Where its solids were written.
     pub outline: Outline,
     /// All texts read.
@@ -84,7 +86,8 @@ pub fn load(
         inputs,
         scans: prepared.scans,
         parsing,
-        preparing: start.elapsed(),
+        preparing: start.elapsed().saturating_sub(prepared.loading),
+        loading: prepared.loading,
         outline: prepared.outline,
         warnings: warnings.len() + prepared.warnings.len(),
         sources,

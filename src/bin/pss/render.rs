@@ -37,9 +37,9 @@ pub fn run(args: &RenderArgs, console: &Console) -> Result<(), Failure> {
     for path in &outputs {
         write(&rendered.film, &loaded.shot.settings, path)?;
     }
-    let Loaded { parsing, preparing, scans, inputs, sources, .. } = loaded;
+    let Loaded { parsing, loading, preparing, scans, inputs, sources, .. } = loaded;
     let files = inputs.len() - sources.files().filter(|f| f.path.is_some()).count();
-    let stages = Stages { parsing, preparing, rendering, writing: writing.elapsed() };
+    let stages = Stages { parsing, loading, preparing, rendering, writing: writing.elapsed() };
     let stats = Stats::new(start.elapsed(), &stages, &rendered, (files, &scans));
     if let Some(path) = &args.stats_json {
         output::write_whole(path, |sink| io::Write::write_all(sink, stats.json().as_bytes()))?;

@@ -15,6 +15,8 @@ use crate::system;
 pub struct Stages {
     /// Reading and understanding the text.
     pub parsing: Duration,
+    /// Reading the files it names.
+    pub loading: Duration,
     /// Building what it says.
     pub preparing: Duration,
     /// Tracing.
@@ -38,6 +40,8 @@ pub struct Stats {
     csg: CsgCounts,
     /// Files opened beside the scene.
     files: usize,
+    /// Layers kept beside the colour: those that the scene asks for and a file holds.
+    layers: usize,
     scans: Vec<ScanNotes>,
 }
 
@@ -67,7 +71,6 @@ struct SolidityNotes {
 #[derive(Serialize, Debug)]
 struct StageSeconds {
     parse: f64,
-    /// Clouds are read while the scene is prepared: their time is part of `prepare`.
     load: f64,
     prepare: f64,
     render: f64,
@@ -138,7 +141,7 @@ impl Stats {
             peak_bytes: system::peak_bytes(),
             stages: StageSeconds {
                 parse: stages.parsing.as_secs_f64(),
-                load: 0.0,
+                load: stages.loading.as_secs_f64(),
                 prepare: stages.preparing.as_secs_f64(),
                 render: stages.rendering.as_secs_f64(),
                 write: stages.writing.as_secs_f64(),
@@ -162,6 +165,7 @@ impl Stats {
                 bad_leaves: counts.bad_leaves,
             },
             files,
+            layers: rendered.film.layers.len(),
             scans: scans.iter().map(ScanNotes::new).collect(),
         }
     }
