@@ -220,6 +220,57 @@ warning[W0123]: nothing is left of what is drawn here
 "#
 }
 
+finds! {
+    solids_of_a_clip_are_looked_at_too: "let far = box([5, 5, 5], [6, 6, 6])\ndraw (sphere(r: 1) - far).clip(half_space(z < 0))\ndraw sphere(r: 1, at: [4, 0, 0]).clip(half_space(z < 0) - sphere(r: 1, at: [9, 0, 5]))\n",
+    r#"
+warning[W0122]: this cutter cuts nothing
+ --> scene.pss:2:22
+  |
+2 | draw (sphere(r: 1) - far).clip(half_space(z < 0))
+  |       ------------   ^^^ takes nothing away
+  |       |
+  |       from this
+  = help: move it to where it meets what it shall cut, or leave it out
+
+warning[W0122]: this cutter cuts nothing
+ --> scene.pss:3:59
+  |
+3 | draw sphere(r: 1, at: [4, 0, 0]).clip(half_space(z < 0) - sphere(r: 1, at: [9, 0, 5]))
+  |                                       -----------------   ^^^^^^^^^^^^^^^^^^^^^^^^^^^ takes nothing away
+  |                                       |
+  |                                       from this
+  = help: move it to where it meets what it shall cut, or leave it out
+"#
+}
+
+finds! { corners_that_a_ball_leaves_of_a_box_are_left: "draw box(size: 2) - sphere(r: 1.73)\ndraw (box(size: 2) - half_space(x + y + z < 2.98)).rotate_z(20deg).move([5, 0, 0])\ndraw cylinder(r: 1, h: 2).move([9, 0, -1]) - sphere(r: 1.414, at: [9, 0, 0])\n" }
+
+finds! {
+    balls_that_touch_at_a_point_share_no_face: "draw sphere(r: 1) & sphere(r: 1, at: [2, 0, 0])\n",
+    r#"
+warning[W0123]: nothing is left of what is drawn here
+ --> scene.pss:1:6
+  |
+1 | draw sphere(r: 1) & sphere(r: 1, at: [2, 0, 0])
+  |      ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ no test line finds anything
+  = help: look at the sizes and places of its parts: do they meet, does a cutter take all?
+"#
+}
+
+finds! { one_cutter_of_two_solids_shares_no_face_with_itself: "let c = sphere(r: 1)\ndraw box([-2, -2, -2], [-0.1, 2, 2]) - c\ndraw box([0.1, -2, -2], [2, 2, 2]) - c\n" }
+
+/// Too many for each to have lines of its own: what no line told is not told.
+#[test]
+fn thousands_of_cutters_that_cut_raise_no_doubt() {
+    let side = 96;
+    let at = |i: u32| f64::from(i) * 32.0 / f64::from(side) + 0.2;
+    let one = |i: u32| format!("sphere(r: 0.13, at: [{}, {}, 1])", at(i % side), at(i / side));
+    let all: Vec<String> = (0..side * side).map(one).collect();
+    let found =
+        findings(&format!("draw difference(box([0, 0, 0], [32.2, 32.2, 1]), [{}])\n", all.join(", ")));
+    assert_eq!(found, "");
+}
+
 finds! { a_clip_that_leaves_something_is_fine: "draw plane(z: 0).clip(sphere(r: 1))\ndraw box(size: 1).clip(sphere(r: 0.55)).move([3, 0, 0])\n" }
 
 finds! { faces_brought_together_by_turns_are_no_film: "let a = box(size: 1).rotate_z(10deg).rotate_x(20deg)\nlet b = box(size: 1, at: [0, 0, 1]).rotate_z(5deg).rotate_z(5deg).rotate_x(8deg).rotate_x(12deg)\ndraw (a | b).move([3, 2, 1])\n",

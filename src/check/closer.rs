@@ -1,6 +1,7 @@
 //! A closer look at what the first lines did not see, before anything is said of it: shapes may be small in their boxes, and
 //! what two of them leave of each other smaller still.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use glam::DVec3;
@@ -10,7 +11,8 @@ use super::evidence::Seen;
 use super::lines::{WORK, through};
 use crate::csg::{Expr, Leaf, Object, Scratch, Spans};
 use crate::geom::{Aabb, Interval, Ray};
-use crate::prepare::{Outline, Piece};
+use crate::prepare::{Outline, Part, Piece};
+use crate::source::Span;
 
 /// Lines through the box of a shape alone: one that fills a thousandth of its box as a line sees it is missed once in seven
 /// times, one that fills a hundredth never.
@@ -22,7 +24,10 @@ const MEETING: u64 = 300;
 /// What is looked at closer, at most: a text with more such places has told enough.
 const PLACES: usize = 200;
 /// Lines for each of these at least: else there are fewer places.
-const FEWEST: usize = 8;
+const FEWEST: usize = 24;
+/// Leaves of a base whose corners are looked at, and how close: each time half as far from them.
+const CORNERED: usize = 4;
+const INSETS: i32 = 16;
 
 /// The part of the first lines' work that may be spent on it is one in so many.
 const SHARE: u64 = 4;
@@ -75,42 +80,133 @@ fn is_met(leaf: &Leaf, scratch: &mut Scratch) -> bool {
     })
 }
 
+/// What is looked at closer, and the lines that do.
+#[derive(Debug, Default)]
+pub(super) struct Closer {
+    pub rays: Vec<Ray>,
+    /// Operands of cuts that are looked at, or need not be, as their boxes do not meet: only of these it is told that they seem
+    /// to do nothing.
+    pub pieces: BTreeSet<Span>,
+    /// Solids drawn.
+    pub parts: BTreeSet<u32>,
+}
+
+/// Two sides between which lines are sent, and what is known then.
+struct Pair {
+    sides: [Range<u32>; 2],
+    pieces: Vec<Span>,
+    part: Option<u32>,
+}
+
 /// Lines at what seems to be nothing, to cut nothing, or to keep clear of something else: between the middles of the shapes that
-/// may meet, where they meet first and leave each other last, and about the middle of where their boxes do. `nodes` is the size
-/// of the object's expression.
-pub(super) fn lines(object: &Object, outline: &Outline, nodes: usize, seen: &Seen) -> Vec<Ray> {
+/// may meet, where they meet first and leave each other last, about the middle of where their boxes do, and close to the
+/// corners of what seems to be cut away whole. `nodes` is the size of the object's expression.
+pub(super) fn closer(object: &Object, outline: &Outline, nodes: usize, seen: &Seen) -> Closer {
     let leaves = object.leaves();
     let boxes = |range: &Range<u32>| -> Vec<Aabb> {
         let own = leaves[range.start as usize..range.end as usize].iter().map(|leaf| leaf.bounds);
         own.filter(|b| b.is_finite() && !b.is_empty()).collect()
     };
-    let mut pairs: Vec<[Range<u32>; 2]> = Vec::new();
+    let mut closer = Closer::default();
+    let mut most = (WORK / SHARE / nodes.max(1) as u64) as usize;
+    for base in eaten(outline, seen) {
+        let own = &leaves[base.start as usize..base.end as usize];
+        let rays: Vec<Ray> = own.iter().take(CORNERED).flat_map(corners).collect();
+        if rays.len() <= most / 2 {
+            most -= rays.len();
+            closer.rays.extend(rays);
+        }
+    }
+    let (mut pairs, mut places) = (pairs(outline, seen), 0);
+    // Sides whose boxes do not meet cost nothing.
+    pairs.retain(|pair| {
+        let [a, b] = pair.sides.each_ref().map(|side| union(&boxes(side)));
+        let is_kept = a.intersection(b).is_empty() || places < PLACES.min(most / FEWEST);
+        places += usize::from(!a.intersection(b).is_empty());
+        is_kept
+    });
+    let each = most / places.clamp(1, PLACES);
+    for Pair { sides: [a, b], pieces, part } in pairs {
+        closer.rays.extend(between(&boxes(&a), &boxes(&b)).into_iter().take(each));
+        closer.pieces.extend(pieces);
+        closer.parts.extend(part);
+    }
+    closer.rays.retain(Ray::is_valid);
+    closer
+}
+
+/// The leaves of bases of which nothing was seen to be left.
+fn eaten<'a>(outline: &'a Outline, seen: &'a Seen) -> impl Iterator<Item = Range<u32>> {
+    let bases = outline.cuts.iter().filter_map(|cut| cut.base.as_ref());
+    bases.filter(|base| !seen.left.contains(&base.at)).map(|base| base.leaves.clone())
+}
+
+/// Between what lines are sent.
+fn pairs(outline: &Outline, seen: &Seen) -> Vec<Pair> {
+    let mut pairs = Vec::new();
     for cut in &outline.cuts {
         let idle = |piece: &&Piece| {
             let base = cut.base.as_ref().is_some_and(|base| !seen.left.contains(&base.at));
             base || !seen.cutting.contains(&piece.at)
         };
         let base = cut.base.as_ref().map(|base| base.leaves.clone()).unwrap_or_default();
-        pairs.extend(cut.cutters.iter().filter(idle).map(|piece| [base.clone(), piece.leaves.clone()]));
+        let pair = |piece: &Piece| Pair {
+            sides: [base.clone(), piece.leaves.clone()],
+            pieces: cut.base.iter().map(|base| base.at).chain([piece.at]).collect(),
+            part: None,
+        };
+        pairs.extend(cut.cutters.iter().filter(idle).map(pair));
     }
     let empty = outline.parts.iter().zip(0..).filter(|(_, i)| !seen.parts.contains(i));
-    pairs.extend(empty.map(|(part, _)| [part.leaves.clone(), part.leaves.clone()]));
+    let alone = |(part, i): (&Part, u32)| Pair {
+        sides: [part.leaves.clone(), part.leaves.clone()],
+        pieces: Vec::new(),
+        part: Some(i),
+    };
+    pairs.extend(empty.map(alone));
     for (a, i) in outline.parts.iter().zip(0..).take(PAIRS) {
-        let apart = |b: &crate::prepare::Part| a.bounds.intersection(b.bounds).is_empty();
+        let apart = |b: &Part| a.bounds.intersection(b.bounds).is_empty();
         let others = outline.parts.iter().zip(0..).skip(i as usize + 1).take(PAIRS);
         let others = others.filter(|(b, j)| !apart(b) && !seen.overlaps.contains_key(&(i, *j)));
-        pairs.extend(others.map(|(b, _)| [a.leaves.clone(), b.leaves.clone()]));
+        pairs.extend(others.map(|(b, _)| Pair {
+            sides: [a.leaves.clone(), b.leaves.clone()],
+            pieces: Vec::new(),
+            part: None,
+        }));
     }
-    let most = (WORK / SHARE / nodes.max(1) as u64) as usize;
-    pairs.truncate(PLACES.min(most / FEWEST));
-    let each = most / pairs.len().max(1);
-    let rays = pairs.iter().flat_map(|[a, b]| between(&boxes(a), &boxes(b)).into_iter().take(each));
-    rays.filter(Ray::is_valid).collect()
+    pairs
+}
+
+/// Lines across a solid just inside the corners, edges and faces of its own box: what is left of it may be no more than those.
+fn corners(leaf: &Leaf) -> Vec<Ray> {
+    let own = leaf.solid.bounds();
+    if !own.is_finite() || own.is_empty() {
+        return Vec::new();
+    }
+    let (middle, half) = (own.center(), 0.5 * own.size());
+    let side = |i: u32| f64::from(i % 3) - 1.0;
+    let toward = (0..27).map(|i| DVec3::new(side(i), side(i / 3), side(i / 9))).filter(|s| *s != DVec3::ZERO);
+    let mut rays = Vec::new();
+    for s in toward {
+        let (u, v) = s.normalize().any_orthonormal_pair();
+        for depth in (1..=INSETS).map(|k| 0.5f64.powi(k)) {
+            let at = middle + (1.0 - depth) * s * half;
+            // A little askew, so that no line runs in a face.
+            for dir in [u + 0.013 * v, v - 0.017 * u] {
+                let local = Ray::new(at, half.max_element() * dir);
+                rays.push(local.transformed(&leaf.place.world_from_local));
+            }
+        }
+    }
+    rays
+}
+
+fn union(boxes: &[Aabb]) -> Aabb {
+    boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union)
 }
 
 /// Lines between boxes of two sides.
 fn between(a: &[Aabb], b: &[Aabb]) -> Vec<Ray> {
-    let union = |boxes: &[Aabb]| boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
     let meeting = union(a).intersection(union(b));
     let length = union(a).union(union(b)).diagonal();
     if meeting.is_empty() || !length.is_finite() {

@@ -16,7 +16,11 @@ fn find(evidence: &Evidence) -> Vec<Diagnostic> {
         if base.is_some_and(|b| !evidence.seen.bases.contains(&b)) {
             continue;
         }
-        let idle = cut.cutters.iter().filter(|c| !evidence.seen.cutting.contains(&c.at));
+        let seen = &evidence.seen;
+        let idle =
+            cut.cutters.iter().filter(|c| !seen.cutting.contains(&c.at) && seen.looked_at.contains(&c.at));
+        // Where nothing is left of a base that is another finding.
+        let idle = idle.filter(|_| base.is_none_or(|base| seen.left.contains(&base)));
         dead.extend(idle.map(|c| (c.at, base)));
     }
     // Where several cut the same, each could be left out, but not all: the first stays.

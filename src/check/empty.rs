@@ -9,11 +9,13 @@ use crate::source::Span;
 pub(super) const FINDING: Finding = Finding { code: "W0123", doc: "What is drawn is nothing.", find };
 
 fn find(evidence: &Evidence) -> Vec<Diagnostic> {
+    let seen = &evidence.seen;
     let parts = evidence.outline.parts.iter().zip(0..);
     // A difference whose cutters take all has a finding of its own.
     let told: Vec<u32> = swallowed(evidence).map(|(base, _)| base.leaves.start).collect();
-    let empty =
-        parts.filter(|(part, i)| !evidence.seen.parts.contains(i) && !told.contains(&part.leaves.start));
+    let empty = parts.filter(|(part, i)| {
+        seen.looked_at_parts.contains(i) && !seen.parts.contains(i) && !told.contains(&part.leaves.start)
+    });
     let mut places: Vec<Span> = empty.map(|(part, _)| part.at).collect();
     let sheets = &evidence.outline.sheets;
     let is_left =

@@ -11,7 +11,6 @@ use super::logic::{Logic, State};
 use crate::csg::{Leaf, Object};
 use crate::geom::{Aabb, Ray, tolerance};
 use crate::prepare::{Cutting, Outline};
-use crate::shot::World;
 use crate::solid::Scratch;
 use crate::source::Span;
 
@@ -35,8 +34,8 @@ pub(super) struct Seen {
     pub crossed: BTreeSet<u32>,
     /// Solids drawn that a line was inside.
     pub parts: BTreeSet<u32>,
-    /// Pairs of leaves whose faces coincide.
-    pub shared: BTreeSet<(u32, u32)>,
+    /// Pairs of leaves whose faces coincide, and a box around where they were seen to.
+    pub shared: BTreeMap<(u32, u32), Aabb>,
     /// Leaves whose faces stand nearer somewhere than the clean-up tells apart, but further than faces that are meant to
     /// coincide; a leaf with itself where it is as thin as that by itself. Whether it is a film there, not a slit.
     pub films: BTreeMap<(u32, u32), bool>,
@@ -46,6 +45,9 @@ pub(super) struct Seen {
     pub gone: BTreeSet<u32>,
     /// Cutters that took something away.
     pub cutting: BTreeSet<Span>,
+    /// Operands of cuts and solids drawn that seemed to do nothing, or to be nothing, and were looked at closer.
+    pub looked_at: BTreeSet<Span>,
+    pub looked_at_parts: BTreeSet<u32>,
     /// Bases that a line was inside.
     pub bases: BTreeSet<Span>,
     /// Bases of which something was left.
@@ -62,7 +64,10 @@ impl Seen {
         self.nothing.extend(o.nothing);
         self.crossed.extend(o.crossed);
         self.parts.extend(o.parts);
-        self.shared.extend(o.shared);
+        for (pair, place) in o.shared {
+            let known = self.shared.entry(pair).or_default();
+            *known = known.union(place);
+        }
         o.films.into_iter().for_each(|(pair, film)| *self.films.entry(pair).or_default() |= film);
         self.gone.extend(o.gone);
         for (pair, place) in o.overlaps {
@@ -85,9 +90,8 @@ const ALIKE: usize = 6;
 const BATCH: usize = 64;
 
 impl<'a> Evidence<'a> {
-    /// Casts all test lines.
-    pub fn gather(world: &'a World, outline: &'a Outline) -> Evidence<'a> {
-        let object = world.solids();
+    /// Casts all test lines; `sheets` are those beside the solids.
+    pub fn gather(object: &'a Object, outline: &'a Outline, sheets: &[Leaf]) -> Evidence<'a> {
         let logic = Logic::new(outline);
         let lines = lines::lines(object, outline, logic.len());
         let look = |batch: &[Ray]| {
@@ -97,9 +101,11 @@ impl<'a> Evidence<'a> {
         };
         let all = |lines: &[Ray]| -> Vec<Seen> { lines.par_chunks(BATCH).map(look).collect() };
         let mut seen = all(&lines).into_iter().fold(Seen::default(), Seen::add);
-        seen = all(&closer::lines(object, outline, logic.len(), &seen)).into_iter().fold(seen, Seen::add);
+        let closer = closer::closer(object, outline, logic.len(), &seen);
+        seen = all(&closer.rays).into_iter().fold(seen, Seen::add);
+        (seen.looked_at, seen.looked_at_parts) = (closer.pieces, closer.parts);
         seen.nothing.extend(closer::nothing(object, &seen));
-        seen.gone.extend(closer::nothing_open(world.open()));
+        seen.gone.extend(closer::nothing_open(sheets));
         Evidence { leaves: object.leaves(), outline, seen }
     }
 }
@@ -172,11 +178,22 @@ impl<'a> Witness<'a> {
                 if !self.is_thin(a, b, ray) {
                     break;
                 }
-                if a.leaf != b.leaf {
-                    self.seen.shared.insert((a.leaf.min(b.leaf), a.leaf.max(b.leaf)));
+                if a.leaf != b.leaf && !self.is_one_cutter([a.leaf, b.leaf]) {
+                    let pair = (a.leaf.min(b.leaf), a.leaf.max(b.leaf));
+                    let place = self.seen.shared.entry(pair).or_default();
+                    *place = place.including(ray.at(a.t));
                 }
             }
         }
+    }
+
+    /// Whether two leaves are one cutter, taken from two solids drawn.
+    fn is_one_cutter(&self, pair: [u32; 2]) -> bool {
+        let [a, b] = pair.map(|i| &self.object.leaves()[i as usize]);
+        let [p, q] = pair.map(|i| self.outline.parts.iter().position(|part| part.leaves.contains(&i)));
+        let calls = pair.map(|i| self.outline.calls[i as usize]);
+        let places = [a, b].map(|leaf| leaf.place.world_from_local);
+        a.cutter && b.cutter && p != q && calls[0] == calls[1] && places[0] == places[1]
     }
 
     /// Whether what lies between two crossings is nothing to the clean-up of set algebra.

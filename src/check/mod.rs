@@ -48,12 +48,19 @@ pub const FINDINGS: &[Finding] = &[
 /// Warnings of one kind that are told; the rest is counted.
 const MOST: usize = 20;
 
-/// Looks at all solids of a world; warnings in the order of the table.
+/// Looks at all solids of a world, those of `.clip` too; warnings in the order of the table.
 pub fn findings(world: &World, outline: &Outline) -> Vec<Diagnostic> {
-    let evidence = Evidence::gather(world, outline);
+    let mut objects = vec![(world.solids(), outline, world.open())];
+    let mut next = 0;
+    while let Some((_, outline, _)) = objects.get(next).copied() {
+        objects.extend(outline.inner.iter().map(|(object, own)| (&**object, own, &[][..])));
+        next += 1;
+    }
+    let gather = |(object, outline, sheets)| Evidence::gather(object, outline, sheets);
+    let evidence: Vec<Evidence> = objects.into_iter().map(gather).collect();
     let mut all = Vec::new();
     for finding in FINDINGS {
-        let mut found = (finding.find)(&evidence);
+        let mut found: Vec<Diagnostic> = evidence.iter().flat_map(finding.find).collect();
         let more = found.len().saturating_sub(MOST);
         found.truncate(MOST);
         if let (1.., Some(last)) = (more, found.last_mut()) {

@@ -36,5 +36,6 @@ pub(super) fn swallowed<'a>(evidence: &'a Evidence) -> impl Iterator<Item = (&'a
     let seen = &evidence.seen;
     let cuts = evidence.outline.cuts.iter();
     let bases = cuts.filter_map(|cut| Some((cut.base.as_ref()?, cut)));
-    bases.filter(|(base, _)| seen.bases.contains(&base.at) && !seen.left.contains(&base.at))
+    let told = |base: &Piece| seen.looked_at.contains(&base.at) && !seen.left.contains(&base.at);
+    bases.filter(move |(base, _)| seen.bases.contains(&base.at) && told(base))
 }

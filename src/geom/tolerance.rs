@@ -31,6 +31,12 @@ pub fn cleanup(scale: f64) -> f64 {
 /// times smaller: 2^-250, where 2^-1022 is the smallest such number.
 pub const SMALLEST: f64 = f64::from_bits((1023 - 250) << 52);
 
+/// Round faces of some size that touch at a point stand within the clean-up of each other as far from it as the root of its
+/// product with the size says; faces that seem to coincide over sixteen times that coincide over an area.
+pub fn touch(scale: f64, size: f64) -> f64 {
+    16.0 * (cleanup(scale) * size).sqrt()
+}
+
 /// Two faces that are meant to coincide stand apart by less than this, world length: 3.6 units of `EPS` times the scale were
 /// seen, a quarter of [`CLEANUP`] is 4. What is thicker and cleaned up all the same is a film that somebody built.
 pub fn film(scale: f64) -> f64 {

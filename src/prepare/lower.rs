@@ -241,14 +241,18 @@ impl<'b, 'o> Lowering<'b, 'o> {
             Lowered::Solid(expr) => expr,
             Lowered::Sheets(sheets) => return Err(no_inside(".clip", by.at, &words(&sheets))),
         };
+        let outline = cutter.outline.of_one(by.at, &expr, within);
         let by = Arc::new(Object::new(cutter.leaves, &expr));
+        self.outline.add_inner(&by, outline);
         let mut clipped = Lowering::new(self.builder, self.measure_all);
         let sheets = match clipped.lower(child, own)? {
             Lowered::Sheets(sheets) => {
                 sheets.into_iter().map(|s| (s.clone(), Clippee::Sheet(s.into()))).collect()
             }
             Lowered::Solid(expr) => {
+                let outline = clipped.outline.of_one(child.0.at, &expr, Aabb::ALL);
                 let object = Arc::new(Object::new(clipped.leaves, &expr));
+                self.outline.add_inner(&object, outline);
                 let face =
                     |(i, leaf): (usize, &Leaf)| (leaf.clone(), Clippee::Faces(object.clone(), i as u32));
                 object.leaves().iter().enumerate().map(face).collect::<Vec<_>>()

@@ -1,8 +1,9 @@
 //! Which parts of a prepared world were written where: for those who tell a user about places of the text.
 
 use std::ops::Range;
+use std::sync::Arc;
 
-use crate::csg::Expr;
+use crate::csg::{Expr, Object};
 use crate::geom::Aabb;
 use crate::scene::BooleanOp;
 use crate::source::Span;
@@ -18,6 +19,8 @@ pub struct Outline {
     pub calls: Vec<Span>,
     /// For each sheet of the world the place of what is drawn.
     pub sheets: Vec<Span>,
+    /// The solids of `.clip`, which stand in sheets: what is clipped and what clips, each with its own places.
+    pub inner: Vec<(Arc<Object>, Outline)>,
 }
 
 /// A solid drawn.
@@ -52,6 +55,21 @@ pub struct Piece {
 }
 
 impl Outline {
+    /// That of an object which is one solid.
+    pub(super) fn of_one(mut self, at: Span, expr: &Expr, bounds: Aabb) -> Outline {
+        let leaves = 0..self.calls.len() as u32;
+        self.parts = vec![Part { at, expr: expr.clone(), leaves, bounds }];
+        self
+    }
+
+    /// Keeps a solid of `.clip`, unless it is known from another copy.
+    pub(super) fn add_inner(&mut self, object: &Arc<Object>, outline: Outline) {
+        let at = |outline: &Outline| outline.parts.first().map(|part| part.at);
+        if self.inner.iter().all(|(_, known)| at(known) != at(&outline)) {
+            self.inner.push((object.clone(), outline));
+        }
+    }
+
     /// Makes room for what an operator takes away, before that of its operands.
     pub(super) fn begin_cut(&mut self, op: BooleanOp) -> Option<usize> {
         matches!(op, BooleanOp::Difference | BooleanOp::Complement).then(|| {
