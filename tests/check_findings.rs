@@ -9,9 +9,9 @@ fn findings(text: &str) -> String {
     let file = sources.add("scene.pss", None, text);
     let read = pss::lang::read(&mut sources, file, &prepare::catalog(), &[]);
     let (scene, _) = read.unwrap_or_else(|e| panic!("{e:?}"));
-    let options = Options { measure_all: true, ..Options::default() };
+    let options = Options { measure_all: true, write_out: true, ..Options::default() };
     let prepared = prepare::prepare(&scene, &options).unwrap_or_else(|e| panic!("{e:?}"));
-    let found = pss::check::findings(&prepared.shot.world, &prepared.outline);
+    let found = pss::check::findings(&prepared.shot, &prepared.outline);
     pss::report::text(&found, &sources, false)
 }
 

@@ -207,7 +207,7 @@ fn a_picture_of_instances_is_that_of_copies() {
         let mut sources = pss::source::SourceMap::default();
         let file = sources.add("test.pss", None, text);
         let (scene, _) = pss::lang::read(&mut sources, file, &pss::prepare::catalog(), &[]).expect("a scene");
-        let options = pss::prepare::Options { measure_all, ..Default::default() };
+        let options = pss::prepare::Options { measure_all, write_out: measure_all, ..Default::default() };
         pss::prepare::prepare(&scene, &options).expect("prepared").shot.world
     };
     let [nested, flat] = [false, true].map(read);
@@ -245,7 +245,7 @@ fn a_subtree_named_twice_is_shared() {
         let text = format!("{lets}\ndraw (sphere(r: 2) - cut) | (box(size: 3) - cut)\n");
         let file = sources.add("test.pss", None, &text);
         let (scene, _) = pss::lang::read(&mut sources, file, &pss::prepare::catalog(), &[]).expect("a scene");
-        let options = pss::prepare::Options { measure_all, ..Default::default() };
+        let options = pss::prepare::Options { measure_all, write_out: measure_all, ..Default::default() };
         pss::prepare::prepare(&scene, &options).expect("prepared").shot.world.solids().leaves().len()
     };
     assert_eq!([read(false), read(true)], [5, 8]);

@@ -90,12 +90,13 @@ const ALIKE: usize = 6;
 const BATCH: usize = 64;
 
 impl<'a> Evidence<'a> {
-    /// Casts all test lines; `sheets` are those beside the solids.
-    pub fn gather(object: &'a Object, outline: &'a Outline, sheets: &[Leaf]) -> Evidence<'a> {
+    /// Casts all test lines; `sheets` are those beside the solids, `eye` is how far from the origin the rays of the picture
+    /// begin.
+    pub fn gather(object: &'a Object, outline: &'a Outline, sheets: &[Leaf], eye: f64) -> Evidence<'a> {
         let logic = Logic::new(outline);
         let lines = lines::lines(object, outline, logic.len());
         let look = |batch: &[Ray]| {
-            let mut witness = Witness::new(object, outline, &logic);
+            let mut witness = Witness { eye, ..Witness::new(object, outline, &logic) };
             batch.iter().for_each(|line| witness.look(line));
             witness.finish()
         };
@@ -115,6 +116,8 @@ struct Witness<'a> {
     object: &'a Object,
     outline: &'a Outline,
     logic: &'a Logic,
+    /// How far from the origin the rays of the picture begin: what is thin to the clean-up is thin to theirs.
+    eye: f64,
     seen: Seen,
     inside: Vec<bool>,
     events: Vec<Event>,
@@ -139,6 +142,7 @@ impl<'a> Witness<'a> {
             object,
             outline,
             logic,
+            eye: 0.0,
             seen: Seen::default(),
             inside: vec![false; object.leaves().len()],
             events: Vec::new(),
@@ -198,14 +202,14 @@ impl<'a> Witness<'a> {
 
     /// Whether what lies between two crossings is nothing to the clean-up of set algebra.
     fn is_thin(&self, a: &Event, b: &Event, ray: &Ray) -> bool {
-        self.is_within(a, b, ray, tolerance::cleanup)
+        self.is_within(a, b, ray, (self.eye, tolerance::cleanup))
     }
 
-    /// Whether two crossings stand no further apart, along a normal, than a tolerance of the scale in play.
-    fn is_within(&self, a: &Event, b: &Event, ray: &Ray, tolerance: fn(f64) -> f64) -> bool {
+    /// Whether two crossings stand no further apart, along a normal, than a tolerance of the scale in play, at least so large.
+    fn is_within(&self, a: &Event, b: &Event, ray: &Ray, (least, tolerance): (f64, fn(f64) -> f64)) -> bool {
         let leaves = [a, b].map(|e| &self.object.leaves()[e.leaf as usize]);
         let scale = ray.origin.length().max(ray.at(a.t).length().min(ray.at(b.t).length()));
-        let scale = scale.max(leaves[0].scale()).max(leaves[1].scale());
+        let scale = scale.max(leaves[0].scale()).max(leaves[1].scale()).max(least);
         let error = a.crossing.shift * leaves[0].place.stretch + b.crossing.shift * leaves[1].place.stretch;
         let thickness = (b.t - a.t) * ray.dir.length() * a.slope.max(b.slope);
         thickness <= tolerance(scale) + error
@@ -213,7 +217,7 @@ impl<'a> Witness<'a> {
 
     /// The leaves of a thin stretch that is a film: of one leaf, or thicker than faces that are meant to coincide leave it.
     fn film_of(&self, a: &Event, b: &Event, ray: &Ray) -> Option<(u32, u32)> {
-        let built = a.leaf == b.leaf || !self.is_within(a, b, ray, tolerance::film);
+        let built = a.leaf == b.leaf || !self.is_within(a, b, ray, (0.0, tolerance::film));
         built.then_some((a.leaf.min(b.leaf), a.leaf.max(b.leaf)))
     }
 

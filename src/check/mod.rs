@@ -19,7 +19,7 @@ mod unseen;
 
 use crate::diag::Diagnostic;
 use crate::prepare::Outline;
-use crate::shot::World;
+use crate::shot::Shot;
 
 pub use evidence::Evidence;
 
@@ -48,15 +48,16 @@ pub const FINDINGS: &[Finding] = &[
 /// Warnings of one kind that are told; the rest is counted.
 const MOST: usize = 20;
 
-/// Looks at all solids of a world, those of `.clip` too; warnings in the order of the table.
-pub fn findings(world: &World, outline: &Outline) -> Vec<Diagnostic> {
+/// Looks at all solids of a shot, those of `.clip` too; warnings in the order of the table.
+pub fn findings(shot: &Shot, outline: &Outline) -> Vec<Diagnostic> {
+    let (world, eye) = (&shot.world, shot.camera.eye().length());
     let mut objects = vec![(world.solids(), outline, world.open())];
     let mut next = 0;
     while let Some((_, outline, _)) = objects.get(next).copied() {
         objects.extend(outline.inner.iter().map(|(object, own)| (&**object, own, &[][..])));
         next += 1;
     }
-    let gather = |(object, outline, sheets)| Evidence::gather(object, outline, sheets);
+    let gather = |(object, outline, sheets)| Evidence::gather(object, outline, sheets, eye);
     let evidence: Vec<Evidence> = objects.into_iter().map(gather).collect();
     let mut all = Vec::new();
     for finding in FINDINGS {

@@ -74,7 +74,7 @@ impl Groups {
     pub fn of<'a>(draws: impl Iterator<Item = &'a Shape>, written_out: bool) -> Groups {
         let mut groups = Groups::default();
         let all = draws.fold(0u64, |sum, shape| sum.saturating_add(groups.see(shape, true)));
-        groups.written_out = written_out && all <= limits::MAX_BUILT;
+        groups.written_out = written_out && all <= limits::MAX_WRITTEN_OUT;
         groups
     }
 

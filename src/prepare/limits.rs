@@ -10,6 +10,9 @@ use crate::scene::{Shape, ShapeKind};
 
 /// The most solids that one `draw` may have built, a kilobyte each.
 pub(super) const MAX_BUILT: u64 = 1_000_000;
+/// The most that is written out where each use shall be told apart: beyond, what stands in many places is shared as in a
+/// picture.
+pub(super) const MAX_WRITTEN_OUT: u64 = 200_000;
 /// The most it may come to, every use of a shape counted: what a boundary can tell apart.
 const MAX_SOLIDS: u64 = u32::MAX as u64;
 

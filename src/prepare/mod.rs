@@ -60,6 +60,9 @@ pub struct Options {
     pub cut: Cut,
     /// Measure the solidity of every scan drawn, even where a picture does not depend on it.
     pub measure_all: bool,
+    /// Whether what stands in several places is built anew in each, and not shared, as long as that is not too much: each
+    /// use is a leaf of its own then, with a place in the [`Outline`].
+    pub write_out: bool,
 }
 
 /// A shot, and what was met on the way to it.
@@ -116,7 +119,7 @@ pub fn prepare(scene: &Scene, options: &Options) -> Result<Prepared, Vec<Diagnos
     let known = materials.as_deref().unwrap_or_default();
     let lines = settings.as_ref().map_or(0, Settings::lines);
     let mut builder = Builder::new(options, known, lines);
-    let world = world(scene, &mut builder, options.measure_all, known.len());
+    let world = world(scene, &mut builder, options, known.len());
     let world = world.map_err(|more| errors.extend(more)).ok();
     let (Some(settings), Some(materials), Some(lights), Some(chosen), Some((world, outline))) =
         (settings, materials.clone(), lights, chosen, world)
@@ -187,11 +190,11 @@ fn unknown_camera(scene: &Scene, name: &str) -> Diagnostic {
 fn world(
     scene: &Scene,
     builder: &mut Builder,
-    measure_all: bool,
+    options: &Options,
     bare: usize,
 ) -> Result<(World, Outline), Vec<Diagnostic>> {
-    let mut lowering = Lowering::new(builder, measure_all);
-    lowering.groups = Groups::of(scene.draws.iter().map(|draw| &draw.shape), measure_all);
+    let mut lowering = Lowering::new(builder, options.measure_all);
+    lowering.groups = Groups::of(scene.draws.iter().map(|draw| &draw.shape), options.write_out);
     let mut errors = Vec::new();
     let mut solids = Vec::new();
     let mut places = Vec::new();

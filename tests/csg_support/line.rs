@@ -27,6 +27,8 @@ pub struct Line {
     pub asked: AtomicU64,
     /// Bits that its crossings' `shift` has.
     pub shift: f64,
+    /// How much wider than one its box is.
+    pub wide: f64,
 }
 
 impl Line {
@@ -44,7 +46,10 @@ impl Solid for Line {
         let unbounded = self.inside || self.ends.len() % 2 == 1;
         match (self.ends.first(), self.ends.last()) {
             _ if unbounded => Aabb::ALL,
-            (Some(&a), Some(&b)) => Aabb { min: dvec3(a, -1.0, -1.0), max: dvec3(b, 1.0, 1.0) },
+            (Some(&a), Some(&b)) => {
+                let half = 1.0 + self.wide;
+                Aabb { min: dvec3(a, -half, -1.0), max: dvec3(b, half, 1.0) }
+            }
             _ => Aabb::EMPTY,
         }
     }

@@ -13,7 +13,8 @@ fn read(text: &str, folder: &Path) -> Result<Prepared, Vec<Diagnostic>> {
     let mut sources = SourceMap::default();
     let file = sources.add("test.pss", Some(folder.join("test.pss")), text);
     let (scene, _) = pss::lang::read(&mut sources, file, &prepare::catalog(), &[])?;
-    let options = Options { measure_all: true, scene_dir: folder.to_owned(), ..Options::default() };
+    let options =
+        Options { measure_all: true, write_out: true, scene_dir: folder.to_owned(), ..Options::default() };
     prepare::prepare(&scene, &options)
 }
 

@@ -25,10 +25,10 @@ pub fn run(args: &CheckArgs, console: &Console) -> u8 {
 
 /// Shows a scene's warnings and says how many there are.
 fn check(args: &CheckArgs, scene: &Path, console: &Console) -> Result<usize, Failure> {
-    let options = Options { measure_all: true, ..Options::default() };
+    let options = Options { measure_all: true, write_out: true, ..Options::default() };
     let Loaded { shot, outline, sources, warnings, .. } =
         load::load(scene, &args.read, options, false, console)?;
-    let findings = pss::check::findings(&shot.world, &outline);
+    let findings = pss::check::findings(&shot, &outline);
     console.show(&findings, &sources);
     Ok(warnings + findings.len())
 }
