@@ -188,6 +188,29 @@ warning[W0125]: what is left between `base` and `box` is thinner than rounding c
 }
 
 finds! {
+    what_is_thin_to_an_eye_far_away_is_a_film: "let base = box([0, 0, 0], [1, 1, 1])\ndraw base - box([-1, -1, -1], [2, 2, 0.9999999999999])\ncamera eye(eye: [1000, 0, 0], look_at: [0, 0, 0])\n",
+    r#"
+warning[W0124]: nothing is left of the base of this difference
+ --> scene.pss:2:6
+  |
+2 | draw base - box([-1, -1, -1], [2, 2, 0.9999999999999])
+  |      ^^^^   ------------------------------------------ this one
+  |      |
+  |      lies wholly inside the cutter
+  = help: make the cutter smaller or move it; what both hold is written `a & b`
+
+warning[W0125]: what is left between `base` and `box` is thinner than rounding can tell
+ --> scene.pss:2:13
+  |
+1 | let base = box([0, 0, 0], [1, 1, 1])
+  |            ------------------------- and this
+2 | draw base - box([-1, -1, -1], [2, 2, 0.9999999999999])
+  |             ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ dropped at this
+  = help: make it thicker, or let the one stand out of the other
+"#
+}
+
+finds! {
     a_gap_can_be_as_thin: "draw box([0, 0, 0], [1, 1, 1]) | box([0, 0, 1.000000000000002], [1, 1, 2])\n",
     r#"
 warning[W0125]: the gap between `box` and `box` is thinner than rounding can tell

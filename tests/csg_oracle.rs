@@ -186,6 +186,38 @@ fn law_88_89_91_intersections_of_many_are_those_of_brute_force() {
     assert!(100_000 < met.into_inner(), "too few were met");
 }
 
+/// Long rows of shapes, many of them flush or grazed: what a ray has left behind is dropped on the way, and what still has a
+/// say is not.
+#[test]
+fn law_88_rows_of_hundreds_are_those_of_brute_force() {
+    let met = AtomicU64::new(0);
+    (0..24u64).into_par_iter().for_each(|seed| {
+        let (mut draws, mut scratch) = (Draws::new(seed ^ 0x50), Scratch::default());
+        let count = 120 + draws.below(120);
+        let leaves: Vec<Leaf> = (0..count).map(|i| forest::in_a_row(&mut draws, i as u64)).collect();
+        let part = |draws: &mut Draws, p: f64| -> Vec<Expr> {
+            (0..count as u32).filter(|_| draws.chance(p)).map(Expr::Leaf).collect()
+        };
+        let cut = Expr::Not(Box::new(Expr::Or(part(&mut draws, 0.4))));
+        let expr = match seed % 3 {
+            0 => Expr::Or(part(&mut draws, 0.9)),
+            1 => Expr::And(vec![Expr::Or(part(&mut draws, 0.9)), cut]),
+            _ => Expr::Xor(part(&mut draws, 0.9)),
+        };
+        let object = Object::new(leaves.clone(), &expr);
+        for _ in 0..30 {
+            let offset = |draws: &mut Draws| draws.pick(&[0.0, 0.1, 0.25, 0.5 - 1e-9, 0.5]);
+            let (y, z) = (offset(&mut draws), offset(&mut draws) * 0.9);
+            let slant = draws.pick(&[0.0, 0.0, 1e-3]);
+            let ray = Ray::new(glam::dvec3(-2.0, y, z), glam::dvec3(1.0, -slant, slant));
+            let want = Oracle::new(&leaves, &expr, &ray).spans();
+            met.fetch_add(want.len() as u64, Ordering::Relaxed);
+            assert_eq!(spans(&object, &ray, Interval::ALL, &mut scratch), want, "{seed} {ray:?}");
+        }
+    });
+    assert!(8_000 < met.into_inner(), "too few were met");
+}
+
 /// A place near an end, or anywhere.
 fn ray_place(draws: &mut Draws, all: &[[End; 2]]) -> f64 {
     let known: Vec<f64> = all.iter().flatten().flatten().map(|e| e.0).collect();

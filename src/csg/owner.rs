@@ -55,10 +55,14 @@ pub(super) fn claim(sweep: &mut Sweep<'_>, face: &Face, reach: f64) -> Claim {
     let window = window(reach, sweep.ray, change.t, *slope);
     let about = Interval::new(change.t - window, change.t + window);
     sweep.meet(about.hi);
+    // What fills is asked two windows away, and what takes part a rounding before. Nothing that is asked about here is dropped.
+    let since = (change.t - 4.0 * window).next_down().next_down();
+    sweep.room.near.drop_before(since, &sweep.room.met);
 
     let mut best = claim_of(sweep, change.met, &change.crossing, *normal, change);
     let mut takes_part = !change.tied || sweep.makes(change.met as usize, [change.t; 2]);
-    for i in 0..sweep.room.met.len() {
+    for which in 0..sweep.room.count_since(about.lo) {
+        let i = sweep.room.near_by(which);
         let met = &sweep.room.met[i];
         if i as u32 == change.met || met.range.intersect(about).is_empty() {
             continue;
@@ -137,12 +141,15 @@ pub(super) fn filling(sweep: &mut Sweep<'_>, t: f64) -> Option<(u64, u32)> {
     let core = sweep.core;
     let leaves = core.tree.leaves();
     sweep.meet(t);
-    if !sweep.room.met.iter().any(|m| leaves[m.leaf as usize].can_fill()) {
+    let count = sweep.room.count_since(t);
+    let can = |which: usize| leaves[sweep.room.met[sweep.room.near_by(which)].leaf as usize].can_fill();
+    if !(0..count).any(can) {
         return None;
     }
     sweep.fill(t);
     let mut last = None;
-    for met in 0..sweep.room.met.len() {
+    for which in 0..sweep.room.count_since(t) {
+        let met = sweep.room.near_by(which);
         let index = sweep.room.met[met].leaf;
         let leaf = &leaves[index as usize];
         if !leaf.can_fill() || !sweep.room.here.fills(&core.tree, index as usize) {

@@ -38,6 +38,56 @@ impl Met {
     }
 }
 
+/// Of the leaves met those whose boxes the ray has not left, and some more: a ray that meets thousands one after the other
+/// looks at few of them at a time.
+#[derive(Debug, Default)]
+pub(super) struct Near {
+    /// Ascending.
+    list: Vec<u32>,
+    /// So many of those met have been looked at.
+    seen: usize,
+    /// When it is longer than this, those left behind are dropped.
+    most: usize,
+    /// All that were dropped have been left up to here.
+    dropped: Option<f64>,
+}
+
+impl Near {
+    /// Twice as many as are near, and this, are kept before any is dropped.
+    const SPARE: usize = 64;
+
+    fn forget(&mut self) {
+        self.list.clear();
+        (self.seen, self.most, self.dropped) = (0, Near::SPARE, None);
+    }
+
+    /// All whose boxes the ray has not left before `t`, and perhaps others.
+    pub fn since(&mut self, t: f64, met: &[Met]) -> &[u32] {
+        if self.dropped.is_some_and(|dropped| t <= dropped) {
+            self.forget();
+        }
+        self.list.extend(self.seen as u32..met.len() as u32);
+        self.seen = met.len();
+        &self.list
+    }
+
+    /// Drops those that the ray left before `t`, now and then.
+    pub fn drop_before(&mut self, t: f64, met: &[Met]) {
+        if self.list.len() <= self.most {
+            return;
+        }
+        let mut dropped = self.dropped;
+        self.list.retain(|i| {
+            let hi = met[*i as usize].range.hi;
+            if hi < t {
+                dropped = Some(dropped.map_or(hi, |known| known.max(hi)));
+            }
+            t <= hi
+        });
+        (self.dropped, self.most) = (dropped, 2 * self.list.len() + Near::SPARE);
+    }
+}
+
 /// Room for sweeps of one tree at a time.
 #[derive(Debug, Default)]
 pub(super) struct Room {
@@ -49,6 +99,7 @@ pub(super) struct Room {
     /// And about a place before.
     pub before: State,
     pub met: Vec<Met>,
+    pub near: Near,
     /// Leaves whose state is open.
     pub open: Open,
     pub walk: Walk,
@@ -64,6 +115,17 @@ pub(super) struct Room {
 }
 
 impl Room {
+    /// How many of those met the ray may not have left before `t`; [`Room::near_by`] tells which.
+    pub fn count_since(&mut self, t: f64) -> usize {
+        self.near.since(t, &self.met).len()
+    }
+
+    /// One of those that were counted last.
+    #[inline]
+    pub fn near_by(&self, which: usize) -> usize {
+        self.near.list[which] as usize
+    }
+
     /// Makes the states those of a tree.
     pub fn states_of(&mut self, core: &Core) {
         if self.tree != Some(core.id) {
@@ -78,6 +140,7 @@ impl Room {
     pub fn enter(&mut self, core: &Core) {
         self.states_of(core);
         self.met.clear();
+        self.near.forget();
         self.open.clear();
         self.queue.clear();
         self.pool.clear();

@@ -236,7 +236,8 @@ impl<'a> Sweep<'a> {
         let tree = &self.core.tree;
         let mut state = std::mem::take(which(self.room));
         state.reset(tree, &self.core.outside);
-        for met in 0..self.room.met.len() {
+        for which in 0..self.room.count_since(t) {
+            let met = self.room.near_by(which);
             if self.room.met[met].range.contains(t) && self.holds(met, t) {
                 state.set(tree, self.room.met[met].leaf as usize, Truth::Yes);
             }

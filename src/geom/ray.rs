@@ -54,6 +54,6 @@ impl Ray {
     #[inline]
     pub fn is_valid(&self) -> bool {
         let squared = self.dir.length_squared();
-        self.origin.is_finite() && f64::MIN_POSITIVE <= squared && squared < f64::INFINITY
+        self.origin.is_finite() && (f64::MIN_POSITIVE..f64::INFINITY).contains(&squared)
     }
 }

@@ -87,6 +87,26 @@ pub fn slow(leaf: &Leaf) -> Leaf {
     Leaf { solid: Arc::new(Slow(leaf.solid.clone())), ..leaf.clone() }
 }
 
+/// A ball, a box or a cylinder of about unit size at one of two hundred places along x, now and then a torus around two.
+pub fn in_a_row(draws: &mut Draws, rank: u64) -> Leaf {
+    let x = draws.below(200) as f64;
+    let solid: Arc<dyn Solid> = match draws.below(4) {
+        0 => Arc::new(Sphere { center: DVec3::X * x, radii: DVec3::splat(0.5) }),
+        1 => {
+            let (min, max) = (DVec3::new(x, -0.5, -0.5), DVec3::new(x + 1.0, 0.5, 0.5));
+            Arc::new(Block(Aabb { min, max }))
+        }
+        2 => Arc::new(Cylinder::new(0.5, DVec3::X * x, DVec3::X * (x + 1.0))),
+        _ => {
+            let moved = Placement::new(DAffine3::from_translation(DVec3::X * x)).expect("a move");
+            return Leaf { rank, ..Leaf::new(others()[0].clone(), moved) };
+        }
+    };
+    let mut leaf = Leaf::new(solid, Placement::IDENTITY);
+    (leaf.rank, leaf.material) = (rank, draws.chance(0.5).then(|| draws.below(4) as u32));
+    leaf
+}
+
 /// A half-space that holds the origin well, or a ball or a box around it, in its place or turned.
 pub fn plain_leaf(draws: &mut Draws, earlier: &mut Vec<f64>, rank: u64) -> Leaf {
     let solid: Arc<dyn Solid> = match draws.below(8) {
