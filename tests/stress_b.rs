@@ -111,6 +111,12 @@ fn case_59_solids_without_a_size_are_nothing_and_a_warning() {
         ("cylinder(r: 1, h: 0)", "h"),
         ("box(size: [1, 1, 0])", "size"),
         ("torus(major: 1, minor: 0)", "minor"),
+        ("cylinder(r: 0, h: 1)", "r"),
+        ("cone(r1: 1, r2: 0.5, h: 0)", "h"),
+        ("capsule(r: 0, from: [0, 0, 0], to: [1, 0, 0])", "r"),
+        ("tube([[0, 0, 0], [1, 0, 0]], r: 0)", "r"),
+        ("superellipsoid(r: 0)", "r"),
+        ("extrude([[0, 0], [1, 0], [0, 1]], h: 0)", "h"),
     ] {
         let scene = prepared(&format!("draw {solid}"));
         assert!(spans(&scene.shot, &line, &mut Scratch::default()).is_empty(), "{solid}");

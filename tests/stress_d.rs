@@ -224,6 +224,10 @@ fn d8_transforms_that_cannot_be_undone_are_told_with_their_place() {
         ".scale([1e-13, 1, 1])",
         ".scale(1 / 0)",
         ".move([1e300 * 1e300, 0, 0])",
+        ".matrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 0]])",
+        ".matrix([[1, 2, 3, 0], [2, 4, 6, 0], [0, 0, 1, 0]])",
+        ".matrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1e-13, 0]])",
+        ".matrix([[1, 0, 0, 0], [0, 0 / 0, 0, 0], [0, 0, 1, 0]])",
     ] {
         for s in ["sphere(r: 1)", "torus(major: 1, minor: 0.5)"] {
             let wrong = errors(&format!("draw {s}{method}"));
