@@ -5,17 +5,13 @@ mod csg_support;
 
 use csg_support::draws::Draws;
 use csg_support::golden::picture;
-use csg_support::scene::{prepared, shot, spans};
+use csg_support::scene::{ends, prepared, shot, spans};
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 use pss::csg::Scratch;
 use pss::geom::{Interval, Ray};
 use pss::shot::Shot;
 
 type Ends = Vec<[f64; 2]>;
-
-fn ends(shot: &Shot, ray: &Ray, scratch: &mut Scratch) -> Ends {
-    spans(shot, ray, scratch).iter().map(|s| [s.interval().lo, s.interval().hi]).collect()
-}
 
 fn is_near(have: &Ends, want: &Ends, error: f64) -> bool {
     have.len() == want.len()

@@ -4,7 +4,7 @@
 mod csg_support;
 
 use csg_support::draws::Draws;
-use csg_support::scene::{errors, prepared, shot, spans};
+use csg_support::scene::{ends, errors, prepared, shot, spans};
 use glam::DVec3;
 use pss::csg::Scratch;
 use pss::geom::Ray;
@@ -81,8 +81,7 @@ fn cell(shared: usize, cell: usize) -> (usize, Vec<String>) {
         let to = DVec3::from_array(std::array::from_fn(|_| draws.between(-0.6, 1.6)));
         let ray = Ray::new(from, to - from);
         let want = pieces(&ray, &all, truth);
-        let have: Vec<[f64; 2]> =
-            spans(&shot, &ray, &mut scratch).iter().map(|s| [s.interval().lo, s.interval().hi]).collect();
+        let have = ends(&shot, &ray, &mut scratch);
         met += want.len();
         let near = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) <= 1e-12;
         if want.len() != have.len() || !want.iter().zip(&have).all(|(a, b)| near(a, b)) {

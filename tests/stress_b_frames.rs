@@ -6,7 +6,7 @@ mod csg_support;
 
 use csg_support::draws::Draws;
 use csg_support::frames::{OFFSETS, TURNS, frame, through};
-use csg_support::scene::{shot, spans};
+use csg_support::scene::{ends, shot};
 use glam::DVec3;
 use pss::csg::Scratch;
 use pss::geom::Ray;
@@ -15,10 +15,6 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 type Ends = Vec<[f64; 2]>;
-
-fn ends(shot: &Shot, ray: &Ray, scratch: &mut Scratch) -> Ends {
-    spans(shot, ray, scratch).iter().map(|s| [s.interval().lo, s.interval().hi]).collect()
-}
 
 /// The scenes of the list, by their numbers.
 fn scenes() -> Vec<(String, String)> {

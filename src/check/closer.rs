@@ -1,7 +1,7 @@
 //! A closer look at what the first lines did not see, before anything is said of it: shapes may be small in their boxes, and
 //! what two of them leave of each other smaller still.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
 use glam::DVec3;
@@ -37,32 +37,43 @@ const ABOUT: [[f64; 3]; 3] = [[1.0, 0.123, 0.077], [0.077, 1.0, 0.123], [0.123, 
 
 /// Leaves that no line has been inside of, and that none is inside of when they are looked at alone.
 pub(super) fn nothing(object: &Object, seen: &Seen) -> Vec<u32> {
-    let is_nothing = |scratch: &mut Scratch, (leaf, i): (&Leaf, u32)| {
+    let is_nothing = |leaf: &Leaf, i: u32, scratch: &mut Scratch| {
         let finite = leaf.bounds.is_finite() && !leaf.bounds.is_empty();
-        (!seen.crossed.contains(&i) && finite && !is_met(leaf, scratch)).then_some(i)
+        !seen.crossed.contains(&i) && finite && !is_met(leaf, scratch)
     };
-    let leaves = object.leaves().par_iter().enumerate().map(|(i, leaf)| (leaf, i as u32));
-    leaves.map_init(Scratch::default, is_nothing).flatten().collect()
+    those(object.leaves(), is_nothing)
 }
 
 /// Sheets that no line through their boxes meets.
 pub(super) fn nothing_open(sheets: &[Leaf]) -> Vec<u32> {
-    let is_nothing = |scratch: &mut Scratch, (leaf, i): (&Leaf, u32)| {
-        let nothing = leaf.bounds.is_empty() || leaf.bounds.is_finite() && !is_crossed(leaf, scratch);
-        nothing.then_some(i)
+    let is_nothing = |leaf: &Leaf, _: u32, scratch: &mut Scratch| {
+        leaf.bounds.is_empty() || leaf.bounds.is_finite() && !is_crossed(leaf, scratch)
     };
-    let sheets = sheets.par_iter().enumerate().map(|(i, leaf)| (leaf, i as u32));
-    sheets.map_init(Scratch::default, is_nothing).flatten().collect()
+    those(sheets, is_nothing)
+}
+
+/// Which leaves a test picks.
+fn those(leaves: &[Leaf], test: impl Fn(&Leaf, u32, &mut Scratch) -> bool + Sync) -> Vec<u32> {
+    let picked = |scratch: &mut Scratch, (leaf, i): (&Leaf, usize)| {
+        let i = i as u32;
+        test(leaf, i, scratch).then_some(i)
+    };
+    let leaves = leaves.par_iter().enumerate().map(|(i, leaf)| (leaf, i));
+    leaves.map_init(Scratch::default, picked).flatten().collect()
+}
+
+/// Whether some line through the box of a leaf alone passes a test.
+fn any_line(leaf: &Leaf, test: impl FnMut(Ray) -> bool) -> bool {
+    let lines = (0..ALONE).map(|number| through(&leaf.bounds, leaf.bounds.diagonal(), number));
+    lines.filter(Ray::is_valid).any(test)
 }
 
 fn is_crossed(sheet: &Leaf, scratch: &mut Scratch) -> bool {
     let mut found = Vec::new();
-    (0..ALONE).any(|number| {
-        let ray = through(&sheet.bounds, sheet.bounds.diagonal(), number);
-        let met = if ray.is_valid() { sheet.met(&ray) } else { Interval::EMPTY };
+    any_line(sheet, |ray| {
+        let met = sheet.met(&ray);
         if !met.is_empty() {
-            let local = sheet.place.ray_to_local(&ray);
-            sheet.crossings(&local, met, &mut scratch.solid, &mut found);
+            sheet.crossings(&sheet.place.ray_to_local(&ray), met, &mut scratch.solid, &mut found);
         }
         !found.is_empty()
     })
@@ -71,11 +82,8 @@ fn is_crossed(sheet: &Leaf, scratch: &mut Scratch) -> bool {
 fn is_met(leaf: &Leaf, scratch: &mut Scratch) -> bool {
     let alone = Object::new(vec![leaf.clone()], &Expr::Leaf(0));
     let mut spans = Spans::new();
-    (0..ALONE).any(|number| {
-        let ray = through(&leaf.bounds, leaf.bounds.diagonal(), number);
-        if ray.is_valid() {
-            alone.spans(&ray, Interval::ALL, scratch, &mut spans);
-        }
+    any_line(leaf, |ray| {
+        alone.spans(&ray, Interval::ALL, scratch, &mut spans);
         !spans.is_empty()
     })
 }
@@ -118,9 +126,12 @@ pub(super) fn closer(object: &Object, outline: &Outline, nodes: usize, seen: &Se
         }
     }
     let (mut pairs, mut places) = (pairs(outline, seen), 0);
-    // Sides whose boxes do not meet cost nothing.
+    // Sides whose boxes do not meet cost nothing. One side stands in many pairs.
+    let mut extents = HashMap::new();
     pairs.retain(|pair| {
-        let [a, b] = pair.sides.each_ref().map(|side| union(&boxes(side)));
+        let mut extent =
+            |side: &Range<u32>| *extents.entry(side.clone()).or_insert_with(|| union(&boxes(side)));
+        let [a, b] = pair.sides.each_ref().map(&mut extent);
         let is_kept = a.intersection(b).is_empty() || places < PLACES.min(most / FEWEST);
         places += usize::from(!a.intersection(b).is_empty());
         is_kept

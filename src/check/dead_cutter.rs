@@ -11,16 +11,14 @@ pub(super) const FINDING: Finding = Finding { code: "W0122", doc: "A cutter cuts
 fn find(evidence: &Evidence) -> Vec<Diagnostic> {
     let mut dead = BTreeMap::new();
     for cut in &evidence.outline.cuts {
-        // A base that is nothing leaves nothing to cut: that is another finding.
+        // A base that is nothing, or of which nothing is left: those are other findings.
         let base = cut.base.as_ref().map(|b| b.at);
-        if base.is_some_and(|b| !evidence.seen.bases.contains(&b)) {
+        if base.is_some_and(|b| !evidence.seen.left.contains(&b)) {
             continue;
         }
         let seen = &evidence.seen;
         let idle =
             cut.cutters.iter().filter(|c| !seen.cutting.contains(&c.at) && seen.looked_at.contains(&c.at));
-        // Where nothing is left of a base that is another finding.
-        let idle = idle.filter(|_| base.is_none_or(|base| seen.left.contains(&base)));
         dead.extend(idle.map(|c| (c.at, base)));
     }
     // Where several cut the same, each could be left out, but not all: the first stays.

@@ -194,10 +194,11 @@ impl<'a> Witness<'a> {
     /// Whether two leaves are one cutter, taken from two solids drawn.
     fn is_one_cutter(&self, pair: [u32; 2]) -> bool {
         let [a, b] = pair.map(|i| &self.object.leaves()[i as usize]);
-        let [p, q] = pair.map(|i| self.outline.parts.iter().position(|part| part.leaves.contains(&i)));
         let calls = pair.map(|i| self.outline.calls[i as usize]);
         let places = [a, b].map(|leaf| leaf.place.world_from_local);
-        a.cutter && b.cutter && p != q && calls[0] == calls[1] && places[0] == places[1]
+        let part = |i: u32| self.outline.parts.iter().position(|part| part.leaves.contains(&i));
+        let is_same = a.cutter && b.cutter && calls[0] == calls[1] && places[0] == places[1];
+        is_same && part(pair[0]) != part(pair[1])
     }
 
     /// Whether what lies between two crossings is nothing to the clean-up of set algebra.

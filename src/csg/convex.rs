@@ -31,12 +31,11 @@ struct End {
     next: f64,
 }
 
-/// What a look along a ray finds.
-enum Found {
-    Nothing,
-    Part([End; 2]),
-    /// The long way has to tell.
-    Unclear,
+impl End {
+    /// Whether it is a boundary that a range holds.
+    fn is_in(&self, range: Interval) -> bool {
+        range.lo < self.t && self.t <= range.hi && self.t.is_finite()
+    }
 }
 
 impl Convex {
@@ -70,17 +69,9 @@ impl Convex {
         range: Interval,
         scratch: &mut Scratch,
     ) -> Option<Option<(Boundary, bool)>> {
-        let [enter, exit] = match self.look(core, ray, scratch) {
-            Found::Nothing => return Some(None),
-            Found::Unclear => return None,
-            Found::Part(ends) => ends,
-        };
-        let inside = |end: &End| range.lo < end.t && end.t <= range.hi;
-        let which = usize::from(!inside(&enter));
-        if exit.t <= range.lo || range.hi < enter.t || which == 1 && !inside(&exit) {
-            return Some(None);
-        }
-        let boundary = self.boundary(core, ray, [enter, exit], which, scratch)?;
+        let Some(ends) = self.look(core, ray, range, scratch)? else { return Some(None) };
+        let Some(which) = ends.iter().position(|end| end.is_in(range)) else { return Some(None) };
+        let boundary = self.boundary(core, ray, ends, which, scratch)?;
         Some(Some((boundary, which == 0)))
     }
 
@@ -97,17 +88,10 @@ impl Convex {
         range: Interval,
         scratch: &mut Scratch,
     ) -> Option<Option<Span>> {
-        let ends = match self.look(core, ray, scratch) {
-            Found::Nothing => return Some(None),
-            Found::Unclear => return None,
-            Found::Part(ends) => ends,
-        };
-        if ends[1].t <= range.lo || range.hi < ends[0].t {
-            return Some(None);
-        }
+        let Some(ends) = self.look(core, ray, range, scratch)? else { return Some(None) };
         let mut told = [None; 2];
         for which in [0, 1] {
-            if range.lo < ends[which].t && ends[which].t <= range.hi && ends[which].t.is_finite() {
+            if ends[which].is_in(range) {
                 told[which] = Some(self.boundary(core, ray, ends, which, scratch)?);
             }
         }
@@ -115,16 +99,21 @@ impl Convex {
         Some(Some(Span { enter, exit }))
     }
 
-    /// The last entry and the first exit.
-    fn look(&self, core: &Core, ray: &Ray, scratch: &mut Scratch) -> Found {
+    /// The last entry and the first exit, where what is between them reaches into the range; `None` where the long way has to
+    /// tell.
+    fn look(
+        &self,
+        core: &Core,
+        ray: &Ray,
+        range: Interval,
+        scratch: &mut Scratch,
+    ) -> Option<Option<[End; 2]>> {
         let none = |t: f64| End { t, leaf: 0, part: 0, next: t };
         let mut ends = [none(f64::NEG_INFINITY), none(f64::INFINITY)];
         for &leaf in &self.leaves {
             let own = &core.tree.leaves()[leaf as usize];
             let mut moved = None;
-            let Some(chord) = own.chord(own.place.local_ray(ray, &mut moved), &mut scratch.solid) else {
-                return Found::Unclear;
-            };
+            let chord = own.chord(own.place.local_ray(ray, &mut moved), &mut scratch.solid)?;
             let [lo, hi] = chord.ends;
             if ends[0].t < lo {
                 ends[0] = End { t: lo, leaf, part: chord.parts[0], next: ends[0].t };
@@ -137,10 +126,10 @@ impl Convex {
                 ends[1].next = ends[1].next.min(hi);
             }
             if ends[1].t <= ends[0].t {
-                return Found::Nothing;
+                return Some(None);
             }
         }
-        Found::Part(ends)
+        Some((range.lo < ends[1].t && ends[0].t <= range.hi).then_some(ends))
     }
 
     /// The boundary at one of the ends; `None` where something else lies near.

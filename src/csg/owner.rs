@@ -148,7 +148,7 @@ pub(super) fn filling(sweep: &mut Sweep<'_>, t: f64) -> Option<(u64, u32)> {
     }
     sweep.fill(t);
     let mut last = None;
-    for which in 0..sweep.room.count_since(t) {
+    for which in 0..count {
         let met = sweep.room.near_by(which);
         let index = sweep.room.met[met].leaf;
         let leaf = &leaves[index as usize];

@@ -61,14 +61,14 @@ impl Near {
         (self.seen, self.most, self.dropped) = (0, Near::SPARE, None);
     }
 
-    /// All whose boxes the ray has not left before `t`, and perhaps others.
-    pub fn since(&mut self, t: f64, met: &[Met]) -> &[u32] {
+    /// Lists all whose boxes the ray has not left before `t`, and perhaps others; how many.
+    pub fn since(&mut self, t: f64, met: &[Met]) -> usize {
         if self.dropped.is_some_and(|dropped| t <= dropped) {
             self.forget();
         }
         self.list.extend(self.seen as u32..met.len() as u32);
         self.seen = met.len();
-        &self.list
+        self.list.len()
     }
 
     /// Drops those that the ray left before `t`, now and then.
@@ -117,7 +117,7 @@ pub(super) struct Room {
 impl Room {
     /// How many of those met the ray may not have left before `t`; [`Room::near_by`] tells which.
     pub fn count_since(&mut self, t: f64) -> usize {
-        self.near.since(t, &self.met).len()
+        self.near.since(t, &self.met)
     }
 
     /// One of those that were counted last.

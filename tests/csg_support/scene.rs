@@ -43,6 +43,11 @@ pub fn errors(text: &str) -> Vec<Diagnostic> {
     errors_in(text, Path::new("."))
 }
 
+/// Where they begin and end.
+pub fn ends(shot: &Shot, ray: &Ray, scratch: &mut Scratch) -> Vec<[f64; 2]> {
+    spans(shot, ray, scratch).iter().map(|s| [s.interval().lo, s.interval().hi]).collect()
+}
+
 /// All spans of a ray's line.
 pub fn spans(shot: &Shot, ray: &Ray, scratch: &mut Scratch) -> Spans {
     let mut out = Spans::new();
