@@ -193,21 +193,31 @@ error[E0511]: the formula does not depend on x, y or z
 }
 
 says! {
-    a_formula_does_not_jump: "draw implicit(floor(x) <= 1, inside: box(size: 1))\ndraw implicit(x % 2 <= 1, inside: box(size: 1))\n",
+    vectors_of_a_formula_have_sizes: "draw implicit(cross([x, y], [1, 2])[0] <= 1, inside: box(size: 1))\ndraw implicit(normalize([x, y, z])[3] <= 1, inside: box(size: 1))\ndraw implicit(x % 30deg <= 1, inside: box(size: 1))\n",
     r#"
-error[E0511]: `floor` jumps: a formula of x, y and z must be continuous
- --> scene.pss:1:15
+error[E0501]: `cross` wants vectors of 3 numbers, found one of 2
+ --> scene.pss:1:29
   |
-1 | draw implicit(floor(x) <= 1, inside: box(size: 1))
-  |               ^^^^^ not of x, y or z
-  = help: for a wave write `sin(x * 1rad)`, for copies `.array(list)`
+1 | draw implicit(cross([x, y], [1, 2])[0] <= 1, inside: box(size: 1))
+  |                             ^^^^^^ a vector
+  = help: write a vector, such as `[x, y, z]`
 
-error[E0511]: `%` jumps: a formula of x, y and z must be continuous
- --> scene.pss:2:17
+error[E0512]: there is no number 3 in this vector
+ --> scene.pss:2:35
   |
-2 | draw implicit(x % 2 <= 1, inside: box(size: 1))
-  |                 ^ not of x, y or z
-  = help: for a wave write `sin(x * 1rad)`, for copies `.array(list)`
+2 | draw implicit(normalize([x, y, z])[3] <= 1, inside: box(size: 1))
+  |                                   ^^^ no such index
+  = help: write 0 to 2
+
+error[E0203]: `%` cannot take a number and an angle
+ --> scene.pss:3:17
+  |
+3 | draw implicit(x % 30deg <= 1, inside: box(size: 1))
+  |               - ^ ----- an angle
+  |               | |
+  |               | does not fit its operands
+  |               a number
+  = help: divide an angle by a unit to get a number: `angle / 1rad`
 "#
 }
 
@@ -255,7 +265,7 @@ error[E0511]: `sphere` is no function of a formula
   |
 2 | draw implicit(sphere(r: x) <= 0, inside: box(size: 1))
   |               ^^^^^^ not known here
-  = help: the functions are `sqrt` `abs` `exp` `ln` `sin` `cos` `tan` `asin` `acos` `atan2` `min` `max` `clamp` `mix` `length` `dot`
+  = help: the functions are `sqrt` `abs` `floor` `ceil` `round` `exp` `ln` `sin` `cos` `tan` `asin` `acos` `atan2` `min` `max` `clamp` `mix` `length` `normalize` `dot` `cross`
 
 error[E0203]: `<=` cannot take a vector and a number
  --> scene.pss:3:22

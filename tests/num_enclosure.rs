@@ -49,6 +49,9 @@ fn functions_of_members_are_members() {
         ("tan", Enclosure::tan, f64::tan),
         ("asin", Enclosure::asin, f64::asin),
         ("acos", Enclosure::acos, f64::acos),
+        ("floor", |a| a.whole(f64::floor), f64::floor),
+        ("ceil", |a| a.whole(f64::ceil), f64::ceil),
+        ("round", |a| a.whole(f64::round), f64::round),
         ("square", |a| a.power(2), |a| a * a),
         ("cube", |a| a.power(3), |a| a * a * a),
         ("inverse", |a| a.power(-1), |a| 1.0 / a),
@@ -62,7 +65,10 @@ fn functions_of_members_are_members() {
             let y = value(x);
             let defined = y.is_finite();
             assert!(!defined || e.contains(y), "{name} of {x:e} in {a:?}: {y:e} not in {e:?}");
-            assert!(defined || e.broken, "{name} of {x:e} in {a:?} is undefined, {e:?} is not broken");
+            assert!(
+                defined || e.breaks.undefined(),
+                "{name} of {x:e} in {a:?} is undefined, {e:?} is not marked"
+            );
         }
     }
 }
@@ -89,7 +95,7 @@ fn operations_on_members_are_members() {
                 !z.is_finite() || e.contains(z),
                 "{x:e} {name} {y:e} in {a:?}, {b:?}: {z:e} not in {e:?}"
             );
-            assert!(z.is_finite() || e.broken, "{x:e} {name} {y:e} in {a:?}, {b:?}: not broken");
+            assert!(z.is_finite() || e.breaks.undefined(), "{x:e} {name} {y:e} in {a:?}, {b:?}: not marked");
         }
     }
 }
@@ -127,13 +133,33 @@ fn rounding_is_outward() {
 }
 
 #[test]
+fn exact_results_of_numbers_are_numbers_and_jumps_are_told() {
+    let p = Enclosure::point;
+    assert_eq!(p(6.0).over(p(2.0)), p(3.0));
+    assert_eq!(p(0.0).over(p(7.0)), p(0.0));
+    assert_eq!(p(1.5).times(p(3.0)), p(4.5));
+    assert_eq!(p(-3.0).power(3), p(-27.0));
+    assert!(p(1.0).over(p(3.0)).width() > 0.0 && p(0.1).times(p(0.3)).width() > 0.0);
+    // What is lost below the smallest number is lost unseen.
+    assert!(p(1e-200).times(p(1e-200)).width() > 0.0);
+    let jumps = Enclosure::new(0.5, 1.0).whole(f64::floor);
+    assert_eq!((jumps.lo, jumps.hi), (0.0, 1.0));
+    assert!(jumps.breaks.any() && !jumps.breaks.undefined());
+    assert!(!Enclosure::new(0.5, 0.9).whole(f64::floor).breaks.any());
+    assert!((jumps + p(1.0)).breaks.any() && jumps.times(p(2.0)).breaks.any());
+}
+
+#[test]
 fn waves_reach_their_crests_only_where_they_have_them() {
     let quarter = std::f64::consts::FRAC_PI_2;
     let around = Enclosure::new(quarter - 1e-9, quarter + 1e-9);
     assert_eq!(around.sin().hi, 1.0);
     assert!(Enclosure::new(0.1, 0.2).sin().hi < 0.2 && 0.0998 < Enclosure::new(0.1, 0.2).sin().lo);
     assert_eq!((Enclosure::new(0.0, 7.0).cos().lo, Enclosure::new(0.0, 7.0).cos().hi), (-1.0, 1.0));
-    assert!(Enclosure::new(1.0, 2.0).tan().broken && !Enclosure::new(-1.0, 1.0).tan().broken);
-    assert!(Enclosure::new(-1.0, 1.0).atan2(Enclosure::new(-2.0, -1.0)).broken);
-    assert!(!Enclosure::new(0.5, 1.0).atan2(Enclosure::new(-2.0, -1.0)).broken);
+    assert!(
+        Enclosure::new(1.0, 2.0).tan().breaks.undefined()
+            && !Enclosure::new(-1.0, 1.0).tan().breaks.undefined()
+    );
+    assert!(Enclosure::new(-1.0, 1.0).atan2(Enclosure::new(-2.0, -1.0)).breaks.any());
+    assert!(!Enclosure::new(0.5, 1.0).atan2(Enclosure::new(-2.0, -1.0)).breaks.any());
 }

@@ -167,6 +167,80 @@ fn functions_and_domains_agree_with_dense_sampling() {
 }
 
 #[test]
+fn what_jumps_agrees_with_dense_sampling() {
+    type Inside = fn(DVec3) -> bool;
+    let cases: &[(&str, Inside)] = &[
+        ("floor(x) <= 0", |p| p.x < 1.0),
+        ("ceil(y) < 1", |p| p.y <= 0.0),
+        ("round(2 * x) / 2 + y <= 0.1", |p| (2.0 * p.x).round() / 2.0 + p.y <= 0.1),
+        ("(floor(x) + floor(y) + floor(z)) % 2 < 1", |p| {
+            (p.x.floor() + p.y.floor() + p.z.floor()).rem_euclid(2.0) < 1.0
+        }),
+        ("x % 0.7 <= 0.3", |p| p.x.rem_euclid(0.7) <= 0.3),
+        ("x % -0.7 <= -0.3", |p| -(-p.x).rem_euclid(0.7) <= -0.3),
+        ("(x * 1rad) % 1rad <= 20deg", |p| p.x.rem_euclid(1.0) <= 20f64.to_radians()),
+        ("length([x, y, z] % 1 - [0.5, 0.5, 0.5]) <= 0.4", |p| {
+            (p - p.floor() - DVec3::splat(0.5)).length() <= 0.4
+        }),
+        ("z <= round(4 * (1 - (x**2 + y**2) / 8)) / 4", |p| {
+            p.z <= (4.0 * (1.0 - (p.x * p.x + p.y * p.y) / 8.0)).round() / 4.0
+        }),
+        ("floor(3 * sin(2 * x * 1rad)) + y <= -0.5", |p| (3.0 * (2.0 * p.x).sin()).floor() + p.y <= -0.5),
+        ("floor(1 / x) <= y", |p| (1.0 / p.x).floor() <= p.y),
+        ("atan2(y, x) <= 100deg", |p| p.y.atan2(p.x) <= 100f64.to_radians()),
+    ];
+    for (condition, inside) in cases {
+        println!("{condition}");
+        matches_sampling(&solid(condition, 2.0), 2.0, 100, 5000, *inside);
+    }
+}
+
+#[test]
+fn vectors_of_a_formula_are_multiplied_normalized_and_indexed() {
+    let axis = DVec3::new(1.0, 2.0, 2.0) / 3.0;
+    let cylinder = solid("length(cross([x, y, z], [1/3, 2/3, 2/3])) <= 0.5", 2.0);
+    matches_sampling(&cylinder, 2.0, 300, 5000, |p| p.cross(axis).length() <= 0.5);
+    let cone = solid("dot(normalize([x, y, z]), [1/3, 2/3, 2/3]) >= 0.6", 2.0);
+    matches_sampling(&cone, 2.0, 200, 5000, |p| p.normalize().dot(axis) >= 0.6);
+    let third = solid("cross([x, y, z], [0, 0, 1])[1] + [x, y][0] * 3 <= 0.2", 2.0);
+    matches_sampling(&third, 2.0, 300, 5000, |p| 2.0 * p.x <= 0.2);
+}
+
+#[test]
+fn jumps_are_found_to_the_last_place_where_they_are_and_cost_few_looks() {
+    let stairs = solid("floor(3 * x) % 2 <= 0.5", 2.0);
+    let ray = Ray::new(DVec3::new(-5.0, 0.1, 0.2), DVec3::X);
+    let found = crossings(&stairs, &ray);
+    // Inside where floor(3 x) is even: [-2/3 k, -2/3 k + 1/3).
+    let expected = (-6..=6).map(|k| f64::from(k) / 3.0).filter(|x| -2.0 < *x && *x < 2.0);
+    let inner = found.iter().filter(|c| c.t > 3.0 + 1e-5 && c.t < 7.0 - 1e-5).collect::<Vec<_>>();
+    assert_eq!(inner.len(), 11);
+    for (c, x) in inner.iter().zip(expected) {
+        assert!((c.t - 5.0 - x).abs() <= c.err + 16.0 * f64::EPSILON * 5.0, "{c:?} {x}");
+        assert!(c.err < 1e-14, "{c:?}");
+    }
+    // Halving alone would stop at its limit of looks here and leave the rest in doubt.
+    let fine = solid("floor(200 * x) % 2 <= 0.5", 2.0);
+    // The cube that is traced is a little larger: one more span from 2 on.
+    assert_eq!(crossings(&fine, &ray).len(), 802);
+}
+
+#[test]
+fn the_normal_at_a_jump_is_that_of_what_jumps() {
+    for (condition, normal) in [
+        ("floor(x + 2 * y) <= 0", DVec3::new(1.0, 2.0, 0.0).normalize()),
+        ("floor(x + 2 * y) + z / 1000 <= 0.5", DVec3::new(1.0, 2.0, 0.0).normalize()),
+        ("ceil(x / 3) * (1 + y**2) <= 0.5", DVec3::X),
+    ] {
+        let (made, ray) = (solid(condition, 2.0), along_x(0.125, 0.25));
+        let found = crossings(&made, &ray);
+        let last = found.iter().rfind(|c| !c.entering).unwrap();
+        let n = made.normal(&ray, last, &mut Scratch::default());
+        assert!((n - normal).length() < 1e-9, "{condition}: {n}");
+    }
+}
+
+#[test]
 fn a_tangent_gives_no_span_and_is_counted() {
     let sphere = solid("x**2 + y**2 + z**2 <= 1", 1.25);
     let mut scratch = Scratch::default();

@@ -134,10 +134,35 @@ impl Reader<'_, '_> {
                 items.iter().map(number).collect::<Eval<Vec<u32>>>().map(Term::Vector)
             }
             ExprKind::Steps(base, steps) => match (&base.kind, steps.as_slice()) {
-                (ExprKind::Name(word), [Follows::Call(args)]) => self.call(word, base.at, args),
+                (ExprKind::Name(word), [Follows::Call(args), rest @ ..]) => {
+                    let called = self.call(word, base.at, args)?;
+                    self.indexed(called, rest, expr.at)
+                }
+                (_, [Follows::Index(..), ..]) => {
+                    let vector = self.term(base)?;
+                    self.indexed(vector, steps, expr.at)
+                }
                 _ => Err(stranger(expr.at).into()),
             },
             _ => Err(stranger(expr.at).into()),
+        }
+    }
+
+    /// A term, or one number of a vector.
+    fn indexed(&mut self, term: Term, steps: &[Follows], at: Span) -> Eval<Term> {
+        match (term, steps) {
+            (term, []) => Ok(term),
+            (Term::Vector(v), [Follows::Index(index, index_at)]) => {
+                let given = self.machine.located(index)?;
+                let i = given.number("the index")?;
+                let found = v.iter().enumerate().find(|(k, _)| *k as f64 == i);
+                found.map(|(_, number)| Term::Number(*number)).ok_or_else(|| {
+                    let last = v.len() - 1;
+                    let error = Diagnostic::error("E0512", format!("there is no number {i} in this vector"));
+                    error.at(*index_at, "no such index").help(format!("write 0 to {last}")).into()
+                })
+            }
+            _ => Err(stranger(at).into()),
         }
     }
 
@@ -159,9 +184,6 @@ impl Reader<'_, '_> {
     }
 
     fn call(&mut self, word: &str, word_at: Span, args: &Args) -> Eval<Term> {
-        if ["floor", "ceil", "round"].contains(&word) {
-            return Err(jumps(word, word_at).into());
-        }
         let Some(function) = FUNCTIONS.iter().find(|f| f.name == word) else {
             let error = Diagnostic::error("E0511", format!("`{word}` is no function of a formula"));
             let error = error.at(word_at, "not known here");
@@ -188,7 +210,7 @@ impl Reader<'_, '_> {
             InfixOp::Multiply => Two::Multiply,
             InfixOp::Divide => Two::Divide,
             InfixOp::Power => Two::Power,
-            _ => return Err(jumps(op.sign(), sign).into()),
+            _ => return self.remainder(op, sign, a, b),
         };
         let sum = matches!(two, Two::Add | Two::Subtract);
         match (&a.term, &b.term) {
@@ -215,6 +237,28 @@ impl Reader<'_, '_> {
             }
             _ => Err(self.unlike(op, a, b, sign).into()),
         }
+    }
+
+    /// a - b floor(a / b), as outside formulas.
+    fn remainder(&mut self, op: InfixOp, sign: Span, a: &Placed, b: &Placed) -> Eval<Term> {
+        if let (Term::Vector(v), Term::Number(_)) = (&a.term, &b.term) {
+            let part = |number: &u32| {
+                let part = Placed { term: Term::Number(*number), at: a.at };
+                let left = self.remainder(op, sign, &part, b)?;
+                self.number(&Placed { term: left, at: a.at }, "a vector")
+            };
+            return v.iter().map(part).collect::<Eval<Vec<u32>>>().map(Term::Vector);
+        }
+        let (x, y, angle) = match (&a.term, &b.term) {
+            (Term::Number(x), Term::Number(y)) => (*x, *y, false),
+            (Term::Angle(x), Term::Angle(y)) => (*x, *y, true),
+            _ => return Err(self.unlike(op, a, b, sign).into()),
+        };
+        let share = self.two(Two::Divide, x, y, sign)?;
+        let whole = self.one(One::Floor, share, sign)?;
+        let taken = self.two(Two::Multiply, y, whole, sign)?;
+        let left = self.two(Two::Subtract, x, taken, sign)?;
+        Ok(if angle { Term::Angle(left) } else { Term::Number(left) })
     }
 
     fn unlike(&self, op: InfixOp, a: &Placed, b: &Placed, sign: Span) -> Diagnostic {
@@ -313,10 +357,4 @@ fn stranger(at: Span) -> Diagnostic {
     Diagnostic::error("E0511", "this cannot stand in a formula of x, y and z")
         .at(at, "not a number")
         .help("a formula is made of numbers, operators and functions of numbers")
-}
-
-fn jumps(word: &str, at: Span) -> Diagnostic {
-    Diagnostic::error("E0511", format!("`{word}` jumps: a formula of x, y and z must be continuous"))
-        .at(at, "not of x, y or z")
-        .help("for a wave write `sin(x * 1rad)`, for copies `.array(list)`")
 }

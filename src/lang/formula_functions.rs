@@ -1,4 +1,4 @@
-//! The functions that a formula of x, y and z may use: those of `maths` that are continuous.
+//! The functions that a formula of x, y and z may use: those of `maths` but for colours.
 
 use super::args::Formal;
 use super::formula::{Placed, Reader, Term};
@@ -38,6 +38,9 @@ const fn line(
 pub const FUNCTIONS: &[Function] = &[
     line("sqrt", X, |r, a, at| plain(r, One::Sqrt, "sqrt", a, at)),
     line("abs", X, |r, a, at| r.each(a[0].term.clone(), |r, x| r.one(One::Abs, x, at))),
+    line("floor", X, |r, a, at| plain(r, One::Floor, "floor", a, at)),
+    line("ceil", X, |r, a, at| plain(r, One::Ceil, "ceil", a, at)),
+    line("round", X, |r, a, at| plain(r, One::Round, "round", a, at)),
     line("exp", X, |r, a, at| plain(r, One::Exp, "exp", a, at)),
     line("ln", X, |r, a, at| plain(r, One::Ln, "ln", a, at)),
     line("sin", ANGLE, |r, a, at| of_angle(r, One::Sin, "sin", a, at)),
@@ -60,7 +63,13 @@ pub const FUNCTIONS: &[Function] = &[
         let square = dot(r, &a[0], &a[0], "length", at)?;
         r.one(One::Sqrt, square, at).map(Term::Number)
     }),
+    line("normalize", V, |r, a, at| {
+        let square = dot(r, &a[0], &a[0], "normalize", at)?;
+        let length = r.one(One::Sqrt, square, at)?;
+        r.each(a[0].term.clone(), |r, x| r.two(Two::Divide, x, length, at))
+    }),
     line("dot", AB, |r, a, at| dot(r, &a[0], &a[1], "dot", at).map(Term::Number)),
+    line("cross", AB, cross),
 ];
 
 fn plain(r: &mut Reader, op: One, name: &str, given: &[Placed], at: Span) -> Eval<Term> {
@@ -112,17 +121,41 @@ fn mix(r: &mut Reader, given: &[Placed], at: Span) -> Eval<Term> {
     r.two(Two::Add, low, high, at).map(Term::Number)
 }
 
-fn dot(r: &mut Reader, a: &Placed, b: &Placed, name: &str, at: Span) -> Eval<u32> {
+fn cross(r: &mut Reader, given: &[Placed], at: Span) -> Eval<Term> {
+    let (u, v) = vectors(&given[0], &given[1], "cross", Some(3))?;
+    let mut minor = |i: usize, j: usize| {
+        let (there, back) = (r.two(Two::Multiply, u[i], v[j], at)?, r.two(Two::Multiply, u[j], v[i], at)?);
+        r.two(Two::Subtract, there, back, at)
+    };
+    Ok(Term::Vector(vec![minor(1, 2)?, minor(2, 0)?, minor(0, 1)?]))
+}
+
+/// Two vectors of one size, of the size that is wanted if one is.
+fn vectors<'p>(
+    a: &'p Placed,
+    b: &'p Placed,
+    name: &str,
+    size: Option<usize>,
+) -> Eval<(&'p [u32], &'p [u32])> {
+    let wanted = size.map_or("of one size".to_owned(), |n| format!("of {n} numbers"));
     let wrong = |p: &Placed| {
-        let kind = p.term.kind();
-        let error = Diagnostic::error("E0501", format!("`{name}` wants vectors of one size, found {kind}"));
-        error.at(p.at, kind).help("write a vector, such as `[x, y, z]`")
+        let found = match &p.term {
+            Term::Vector(v) => format!("one of {}", v.len()),
+            other => other.kind().to_owned(),
+        };
+        let error = Diagnostic::error("E0501", format!("`{name}` wants vectors {wanted}, found {found}"));
+        error.at(p.at, p.term.kind()).help("write a vector, such as `[x, y, z]`")
     };
     let Term::Vector(u) = &a.term else { return Err(wrong(a).into()) };
     let Term::Vector(v) = &b.term else { return Err(wrong(b).into()) };
-    if u.len() != v.len() {
-        return Err(wrong(b).into());
+    match u.len() == v.len() && size.is_none_or(|n| n == u.len()) {
+        true => Ok((u, v)),
+        false => Err(wrong(b).into()),
     }
+}
+
+fn dot(r: &mut Reader, a: &Placed, b: &Placed, name: &str, at: Span) -> Eval<u32> {
+    let (u, v) = vectors(a, b, name, None)?;
     let mut sum = r.two(Two::Multiply, u[0], v[0], at)?;
     for (a, b) in u.iter().zip(v).skip(1) {
         let product = r.two(Two::Multiply, *a, *b, at)?;

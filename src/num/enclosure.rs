@@ -6,13 +6,48 @@
 //! errors are given there as below one unit in the last place, for `pow` 0.7, for `atan2` two; their results are moved
 //! outward by [`tolerance::LIBM_ULPS`]. (Moore, Kearfott and Cloud 2009, chapters 2 and 3.)
 //!
-//! An operation that is undefined for some operands (a root of a negative number, a division by zero, an overflow) or
-//! jumps (`tan`, `atan2` across the negative x axis) gives the interval of its defined results, marked as broken; with no
-//! defined result it is empty. Oracle: the same in values at random points (`tests/num_enclosure.rs`).
+//! An operation that is undefined for some operands (a root of a negative number, a division by zero, an overflow) gives
+//! the interval of its defined results and says so; one that jumps between results (`floor`, `atan2` across the negative x
+//! axis) says that ([`Breaks`]). With no defined result the interval is empty. Oracle: the same in values at random points (`tests/num_enclosure.rs`).
 
 mod functions;
 
 use crate::geom::tolerance;
+
+/// What may keep a function from being continuous over an interval.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Breaks(u8);
+
+impl Breaks {
+    /// Nothing: it is continuous.
+    pub const NONE: Breaks = Breaks(0);
+    /// It may jump, from one number of the enclosure to another.
+    pub const JUMPS: Breaks = Breaks(1);
+    /// It may have no value somewhere, and jump.
+    pub const UNDEFINED: Breaks = Breaks(3);
+
+    /// `UNDEFINED` where that may be so.
+    fn undefined_if(it_may: bool) -> Breaks {
+        if it_may { Breaks::UNDEFINED } else { Breaks::NONE }
+    }
+
+    /// Whether it may be discontinuous or undefined.
+    pub fn any(self) -> bool {
+        self != Breaks::NONE
+    }
+
+    /// Whether some value may be undefined.
+    pub fn undefined(self) -> bool {
+        self == Breaks::UNDEFINED
+    }
+}
+
+impl std::ops::BitOr for Breaks {
+    type Output = Breaks;
+    fn bitor(self, o: Breaks) -> Breaks {
+        Breaks(self.0 | o.0)
+    }
+}
 
 /// Numbers from `lo` to `hi`; empty where `hi < lo`.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -21,22 +56,23 @@ pub struct Enclosure {
     pub lo: f64,
     /// No defined value is above.
     pub hi: f64,
-    /// Whether some value may be undefined, or the function may jump.
-    pub broken: bool,
+    /// What may keep the values from being those of a continuous function.
+    pub breaks: Breaks,
 }
 
 impl Enclosure {
     /// No value at all.
-    pub const EMPTY: Enclosure = Enclosure { lo: f64::INFINITY, hi: f64::NEG_INFINITY, broken: true };
+    pub const EMPTY: Enclosure =
+        Enclosure { lo: f64::INFINITY, hi: f64::NEG_INFINITY, breaks: Breaks::UNDEFINED };
 
     /// One number.
     pub fn point(x: f64) -> Enclosure {
-        Enclosure { lo: x, hi: x, broken: false }
+        Enclosure { lo: x, hi: x, breaks: Breaks::NONE }
     }
 
     /// The numbers between two.
     pub fn new(lo: f64, hi: f64) -> Enclosure {
-        Enclosure { lo, hi, broken: false }
+        Enclosure { lo, hi, breaks: Breaks::NONE }
     }
 
     /// Whether it holds nothing.
@@ -54,36 +90,56 @@ impl Enclosure {
         self.hi - self.lo
     }
 
-    /// The numbers of both, broken where either is.
+    /// The numbers of both.
     pub fn intersect(self, o: Enclosure) -> Enclosure {
-        Enclosure { lo: self.lo.max(o.lo), hi: self.hi.min(o.hi), broken: self.broken || o.broken }
+        Enclosure { lo: self.lo.max(o.lo), hi: self.hi.min(o.hi), breaks: self.breaks | o.breaks }
     }
 
     /// The numbers of either and between.
     pub fn hull(self, o: Enclosure) -> Enclosure {
-        Enclosure { lo: self.lo.min(o.lo), hi: self.hi.max(o.hi), broken: self.broken || o.broken }
+        Enclosure { lo: self.lo.min(o.lo), hi: self.hi.max(o.hi), breaks: self.breaks | o.breaks }
     }
 
     /// From bounds of correctly rounded results: one step outward. An overflow is undefined.
-    fn rounded(lo: f64, hi: f64, broken: bool) -> Enclosure {
+    fn rounded(lo: f64, hi: f64, breaks: Breaks) -> Enclosure {
         // NaN comes of infinite bounds alone: nothing is known then.
         let lo = if lo.is_nan() { f64::NEG_INFINITY } else { lo.next_down() };
         let hi = if hi.is_nan() { f64::INFINITY } else { hi.next_up() };
-        Enclosure { lo, hi, broken: broken || lo == f64::NEG_INFINITY || hi == f64::INFINITY }
+        let overflows = lo == f64::NEG_INFINITY || hi == f64::INFINITY;
+        Enclosure { lo, hi, breaks: breaks | Breaks::undefined_if(overflows) }
     }
 
     fn unless_empty(self, o: Enclosure, f: impl FnOnce() -> Enclosure) -> Enclosure {
         if self.is_empty() || o.is_empty() { Enclosure::EMPTY } else { f() }
     }
 
+    /// Whether it holds one number alone.
+    fn is_point(self) -> bool {
+        self.lo == self.hi
+    }
+
+    /// One exact result of two numbers: where a function jumps at whole numbers, a step outward from one would leave
+    /// undecided which side it is on. `lost` is what rounding took, as long as it does not underflow.
+    fn exact(self, o: Enclosure, result: f64, lost: f64) -> Option<Enclosure> {
+        let large = tolerance::SMALLEST < result.abs() && result.is_finite();
+        let certain = self.lo == 0.0 || (lost == 0.0 && large);
+        certain.then_some(Enclosure { lo: result, hi: result, breaks: self.breaks | o.breaks })
+    }
+
     /// All products.
     pub fn times(self, o: Enclosure) -> Enclosure {
+        if self.is_point() && o.is_point() {
+            let product = self.lo * o.lo;
+            if let Some(exact) = self.exact(o, product, self.lo.mul_add(o.lo, -product)) {
+                return exact;
+            }
+        }
         self.unless_empty(o, || {
-            let mut all = Enclosure { broken: self.broken || o.broken, ..Enclosure::EMPTY };
+            let mut all = Enclosure { breaks: self.breaks | o.breaks, ..Enclosure::EMPTY };
             for (x, y) in [(self.lo, o.lo), (self.lo, o.hi), (self.hi, o.lo), (self.hi, o.hi)] {
                 // Nothing is lost in a product with zero.
                 let zero = x == 0.0 || y == 0.0;
-                let product = Enclosure::rounded(x * y, x * y, false);
+                let product = Enclosure::rounded(x * y, x * y, Breaks::NONE);
                 all = all.hull(if zero && (x * y) == 0.0 { Enclosure::point(0.0) } else { product });
             }
             all
@@ -91,20 +147,27 @@ impl Enclosure {
     }
 
     /// Any number, and perhaps none.
-    const ALL_BROKEN: Enclosure = Enclosure { lo: f64::NEG_INFINITY, hi: f64::INFINITY, broken: true };
+    const ALL_BROKEN: Enclosure =
+        Enclosure { lo: f64::NEG_INFINITY, hi: f64::INFINITY, breaks: Breaks::UNDEFINED };
 
     /// All quotients; a divisor of zero gives none.
     pub fn over(self, o: Enclosure) -> Enclosure {
+        if self.is_point() && o.is_point() && o.lo != 0.0 {
+            let quotient = self.lo / o.lo;
+            if let Some(exact) = self.exact(o, quotient, quotient.mul_add(-o.lo, self.lo)) {
+                return exact;
+            }
+        }
         self.unless_empty(o, || match o.reciprocal_bounds() {
             None => Enclosure::EMPTY,
             Some((lo, hi)) if lo.is_finite() && hi.is_finite() => {
                 let all = [self.lo / o.lo, self.lo / o.hi, self.hi / o.lo, self.hi / o.hi];
                 let lo = all.into_iter().fold(f64::INFINITY, f64::min);
                 let hi = all.into_iter().fold(f64::NEG_INFINITY, f64::max);
-                Enclosure::rounded(lo, hi, self.broken || o.broken)
+                Enclosure::rounded(lo, hi, self.breaks | o.breaks)
             }
             Some(_) if self.lo == 0.0 && self.hi == 0.0 => {
-                Enclosure { broken: true, ..Enclosure::point(0.0) }
+                Enclosure { breaks: Breaks::UNDEFINED, ..Enclosure::point(0.0) }
             }
             Some((lo, hi)) => self.times_halfline(lo, hi),
         })
@@ -135,9 +198,9 @@ impl Enclosure {
         let near = (near * (1.0 - 4.0 * tolerance::EPS)).next_down().max(0.0);
         let positive = (self.lo >= 0.0) == (hi == f64::INFINITY);
         if positive {
-            Enclosure { lo: near, hi: f64::INFINITY, broken: true }
+            Enclosure { lo: near, hi: f64::INFINITY, breaks: Breaks::UNDEFINED }
         } else {
-            Enclosure { lo: f64::NEG_INFINITY, hi: -near, broken: true }
+            Enclosure { lo: f64::NEG_INFINITY, hi: -near, breaks: Breaks::UNDEFINED }
         }
     }
 
@@ -159,9 +222,14 @@ impl Enclosure {
         } else {
             (a.min(b), a.max(b))
         };
+        // Whole numbers that a double holds lose nothing.
+        let whole = self.is_point() && self.lo.fract() == 0.0 && lo.abs() <= 2.0 / tolerance::EPS;
+        if whole {
+            return Enclosure { lo, hi, breaks: self.breaks };
+        }
         // n - 1 multiplications, each within half an ulp.
         let by = f64::from(n) * tolerance::EPS;
-        let bound = Enclosure::rounded(lo - by * lo.abs(), hi + by * hi.abs(), self.broken);
+        let bound = Enclosure::rounded(lo - by * lo.abs(), hi + by * hi.abs(), self.breaks);
         if even { Enclosure { lo: bound.lo.max(0.0), ..bound } } else { bound }
     }
 
@@ -170,7 +238,8 @@ impl Enclosure {
         if self.is_empty() || self.hi < 0.0 {
             return Enclosure::EMPTY;
         }
-        let root = Enclosure::rounded(self.lo.max(0.0).sqrt(), self.hi.sqrt(), self.broken || self.lo < 0.0);
+        let breaks = self.breaks | Breaks::undefined_if(self.lo < 0.0);
+        let root = Enclosure::rounded(self.lo.max(0.0).sqrt(), self.hi.sqrt(), breaks);
         Enclosure { lo: root.lo.max(0.0), ..root }
     }
 
@@ -185,13 +254,13 @@ impl Enclosure {
     /// The smaller of each pair.
     pub fn min(self, o: Enclosure) -> Enclosure {
         let (lo, hi) = (self.lo.min(o.lo), self.hi.min(o.hi));
-        self.unless_empty(o, || Enclosure { lo, hi, broken: self.broken || o.broken })
+        self.unless_empty(o, || Enclosure { lo, hi, breaks: self.breaks | o.breaks })
     }
 
     /// The larger of each pair.
     pub fn max(self, o: Enclosure) -> Enclosure {
         let (lo, hi) = (self.lo.max(o.lo), self.hi.max(o.hi));
-        self.unless_empty(o, || Enclosure { lo, hi, broken: self.broken || o.broken })
+        self.unless_empty(o, || Enclosure { lo, hi, breaks: self.breaks | o.breaks })
     }
 }
 
@@ -207,11 +276,11 @@ impl std::ops::Add for Enclosure {
     fn add(self, o: Enclosure) -> Enclosure {
         self.unless_empty(o, || {
             let ((lo, below), (hi, above)) = (two_sum(self.lo, o.lo), two_sum(self.hi, o.hi));
-            let bound = Enclosure::rounded(lo, hi, self.broken || o.broken);
+            let bound = Enclosure::rounded(lo, hi, self.breaks | o.breaks);
             // What was rounded inward, or not at all, needs no step.
             let lo = if below >= 0.0 && lo.is_finite() { lo } else { bound.lo };
             let hi = if above <= 0.0 && hi.is_finite() { hi } else { bound.hi };
-            Enclosure { lo, hi, broken: bound.broken }
+            Enclosure { lo, hi, breaks: bound.breaks }
         })
     }
 }

@@ -34,6 +34,10 @@ pub enum One {
     Acos,
     Exp,
     Ln,
+    Floor,
+    Ceil,
+    /// To the nearest whole number, halves away from zero.
+    Round,
 }
 
 /// Functions of two numbers.

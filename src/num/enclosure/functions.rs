@@ -2,20 +2,20 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::Enclosure;
+use super::{Breaks, Enclosure};
 use crate::geom::tolerance;
 
 impl Enclosure {
     /// From bounds of results of `libm`.
-    fn of_libm(lo: f64, hi: f64, broken: bool) -> Enclosure {
+    fn of_libm(lo: f64, hi: f64, breaks: Breaks) -> Enclosure {
         let by = f64::from(tolerance::LIBM_ULPS) * tolerance::EPS;
         let out = |x: f64| by * x.abs() + f64::MIN_POSITIVE;
-        Enclosure::rounded(lo - out(lo), hi + out(hi), broken)
+        Enclosure::rounded(lo - out(lo), hi + out(hi), breaks)
     }
 
     /// A function that grows.
     fn growing(self, f: fn(f64) -> f64) -> Enclosure {
-        Enclosure::of_libm(f(self.lo), f(self.hi), self.broken)
+        Enclosure::of_libm(f(self.lo), f(self.hi), self.breaks)
     }
 
     /// e to all powers.
@@ -32,8 +32,18 @@ impl Enclosure {
         if self.is_empty() || self.hi <= 0.0 {
             return Enclosure::EMPTY;
         }
-        let broken = self.broken || self.lo <= 0.0;
-        Enclosure { lo: self.lo.max(0.0), hi: self.hi, broken }.growing(libm::log)
+        let breaks = self.breaks | Breaks::undefined_if(self.lo <= 0.0);
+        Enclosure { lo: self.lo.max(0.0), hi: self.hi, breaks }.growing(libm::log)
+    }
+
+    /// The whole numbers that a function makes which only grows, and only by jumps: `floor`, `ceil` and `round`, exact.
+    pub fn whole(self, f: fn(f64) -> f64) -> Enclosure {
+        if self.is_empty() {
+            return self;
+        }
+        let (lo, hi) = (f(self.lo), f(self.hi));
+        let jumps = if lo < hi { Breaks::JUMPS } else { Breaks::NONE };
+        Enclosure { lo, hi, breaks: self.breaks | jumps }
     }
 
     /// The angles with these sines, radians.
@@ -41,8 +51,8 @@ impl Enclosure {
         if self.is_empty() || self.hi < -1.0 || 1.0 < self.lo {
             return Enclosure::EMPTY;
         }
-        let broken = self.broken || self.lo < -1.0 || 1.0 < self.hi;
-        Enclosure { lo: self.lo.max(-1.0), hi: self.hi.min(1.0), broken }.growing(libm::asin)
+        let breaks = self.breaks | Breaks::undefined_if(self.lo < -1.0 || 1.0 < self.hi);
+        Enclosure { lo: self.lo.max(-1.0), hi: self.hi.min(1.0), breaks }.growing(libm::asin)
     }
 
     /// The angles with these cosines, radians.
@@ -50,8 +60,8 @@ impl Enclosure {
         if self.is_empty() || self.hi < -1.0 || 1.0 < self.lo {
             return Enclosure::EMPTY;
         }
-        let broken = self.broken || self.lo < -1.0 || 1.0 < self.hi;
-        Enclosure::of_libm(libm::acos(self.hi.min(1.0)), libm::acos(self.lo.max(-1.0)), broken)
+        let breaks = self.breaks | Breaks::undefined_if(self.lo < -1.0 || 1.0 < self.hi);
+        Enclosure::of_libm(libm::acos(self.hi.min(1.0)), libm::acos(self.lo.max(-1.0)), breaks)
     }
 
     /// Whether `quarter` + 4 k quarter turns is among the angles, for any whole k. In doubt yes: quarters of large
@@ -68,13 +78,13 @@ impl Enclosure {
             return self;
         }
         if !self.lo.is_finite() || !self.hi.is_finite() {
-            return Enclosure { lo: -1.0, hi: 1.0, broken: true };
+            return Enclosure { lo: -1.0, hi: 1.0, breaks: Breaks::UNDEFINED };
         }
         let (a, b) = (f(self.lo), f(self.hi));
-        let ends = Enclosure::of_libm(a.min(b), a.max(b), self.broken);
+        let ends = Enclosure::of_libm(a.min(b), a.max(b), self.breaks);
         let lo = if self.meets_quarter(crest + 2.0) { -1.0 } else { ends.lo.max(-1.0) };
         let hi = if self.meets_quarter(crest) { 1.0 } else { ends.hi.min(1.0) };
-        Enclosure { lo, hi, broken: self.broken }
+        Enclosure { lo, hi, breaks: self.breaks }
     }
 
     /// The sines of angles, radians.
@@ -87,7 +97,7 @@ impl Enclosure {
         self.wave(libm::cos, 0.0)
     }
 
-    /// The tangents of angles, radians; broken at the poles.
+    /// The tangents of angles, radians; which may be undefined at the poles.
     pub fn tan(self) -> Enclosure {
         if self.is_empty() {
             return self;
@@ -99,19 +109,19 @@ impl Enclosure {
         self.growing(libm::tan)
     }
 
-    /// The angles of the points (x, self), radians; broken where they meet the cut along negative x.
+    /// The angles of the points (x, self), radians; which jump where they meet the cut along negative x.
     pub fn atan2(self, x: Enclosure) -> Enclosure {
         self.unless_empty(x, || {
-            let broken = self.broken || x.broken;
+            let breaks = self.breaks | x.breaks;
             if self.lo <= 0.0 && 0.0 <= self.hi && x.lo <= 0.0 {
-                return Enclosure { broken: true, ..Enclosure::of_libm(-PI, PI, true) };
+                return Enclosure::of_libm(-PI, PI, breaks | Breaks::JUMPS);
             }
             // The extreme angles of a box that does not meet the cut are those of corners.
             let corners = [(self.lo, x.lo), (self.lo, x.hi), (self.hi, x.lo), (self.hi, x.hi)];
             let angles = corners.map(|(y, x)| libm::atan2(y, x));
             let lo = angles.into_iter().fold(f64::INFINITY, f64::min);
             let hi = angles.into_iter().fold(f64::NEG_INFINITY, f64::max);
-            Enclosure::of_libm(lo, hi, broken)
+            Enclosure::of_libm(lo, hi, breaks)
         })
     }
 
@@ -121,17 +131,17 @@ impl Enclosure {
             return Enclosure::EMPTY;
         }
         let zero = self.lo <= 0.0;
-        let broken = self.broken || e.broken || self.lo < 0.0 || (zero && e.lo <= 0.0);
+        let breaks = self.breaks | e.breaks | Breaks::undefined_if(self.lo < 0.0 || (zero && e.lo <= 0.0));
         if self.hi == 0.0 {
             // 0^0 is 1.
             let (lo, hi) = (f64::from(e.hi <= 0.0), f64::from(e.contains(0.0)));
-            return if e.hi < 0.0 { Enclosure::EMPTY } else { Enclosure { lo, hi, broken } };
+            return if e.hi < 0.0 { Enclosure::EMPTY } else { Enclosure { lo, hi, breaks } };
         }
         let all = [(self.lo.max(0.0), e.lo), (self.lo.max(0.0), e.hi), (self.hi, e.lo), (self.hi, e.hi)];
         let all = all.map(|(b, e)| libm::pow(b, e));
         let lo = all.into_iter().fold(f64::INFINITY, f64::min);
         let hi = all.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        let bound = Enclosure::of_libm(lo, hi, broken);
+        let bound = Enclosure::of_libm(lo, hi, breaks);
         Enclosure { lo: bound.lo.max(0.0), ..bound }
     }
 }

@@ -4,6 +4,7 @@
 //! of the ray that is asked about. The solid ends where the box around
 //! the bounding shape ends; that it ends at the shape itself is left to set algebra.
 
+mod jumps;
 mod roots;
 mod stretches;
 mod tape;
@@ -118,12 +119,14 @@ impl Solid for Implicit {
     }
 
     /// The gradient of the formula, turned so that it points out as the crossing says: at a pole, and where the domain of
-    /// the formula ends, its values fall outward. Where it has none, against or along the ray.
+    /// the formula ends, its values fall outward; at a jump it is that of what jumps. Where it has none, against or along the ray.
     fn normal(&self, ray: &Ray, crossing: &Crossing, scratch: &mut Scratch) -> DVec3 {
         if crossing.part != SURFACE {
             return Block(self.traced).normal(ray, crossing, scratch);
         }
-        let (_, gradient) = tape::gradient(&self.formula.steps, ray.at(crossing.t), &mut scratch.implicit);
+        let reach = (2.0 * crossing.err + tolerance::STRETCH * crossing.t.abs()) * ray.dir;
+        let (p, room) = (ray.at(crossing.t), &mut scratch.implicit);
+        let (_, gradient) = tape::gradient(&self.formula.steps, p, reach, room);
         let largest = gradient.abs().max_element();
         let against = if crossing.entering { -ray.dir } else { ray.dir };
         let normal = (gradient / largest).try_normalize().unwrap_or_else(|| unit(against));

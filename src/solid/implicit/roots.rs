@@ -6,7 +6,7 @@
 //! F is narrowed by the mean value form f(m) + D (T - m), whose excess falls with the square of the part's width. A part
 //! that cannot be decided, because it is a few units in the last place long or because rounding alone spreads the values
 //! as wide, is undecided: neighbours of this kind are one part, and it has a crossing iff the signs at its ends differ.
-//! Such are tangents, the apex of a cone, kinks, poles and ends of the domain; each is counted. Signs are those of the
+//! Such are tangents, the apex of a cone, kinks, poles, jumps and ends of the domain; each is counted. Signs are those of the
 //! values in `f64`, which lie in all enclosures, so crossings alternate whatever rounding does.
 //!
 //! Cost: a few parts for each root, some fifty for each tangent. A formula that is zero up to rounding over a whole stretch
@@ -14,9 +14,10 @@
 
 use glam::DVec3;
 
+use super::jumps;
 use super::tape::{self, Room, Slope};
 use crate::geom::tolerance;
-use crate::num::enclosure::Enclosure;
+use crate::num::enclosure::{Breaks, Enclosure};
 use crate::scene::Formula;
 
 /// The most parts that are looked at in one stretch; what is left then is undecided.
@@ -51,8 +52,10 @@ enum Found {
     Monotone(Enclosure),
     /// Dividing tells no more.
     Undecided,
-    /// Not yet.
+    /// Not yet: to be divided in half.
     Open,
+    /// Not yet: a jump lies here, to be parted from what is before and after.
+    Jump([f64; 2]),
 }
 
 impl Line<'_> {
@@ -88,7 +91,7 @@ impl Line<'_> {
     fn is_decided(&self, f: Enclosure) -> bool {
         let outside = if self.formula.closed { 0.0 < f.lo } else { 0.0 <= f.lo };
         let inside = if self.formula.closed { f.hi <= 0.0 } else { f.hi < 0.0 };
-        f.is_empty() || outside || (inside && !f.broken)
+        f.is_empty() || outside || (inside && !f.breaks.undefined())
     }
 
     fn judge(&mut self, a: f64, b: f64, shortest: f64) -> Found {
@@ -96,21 +99,26 @@ impl Line<'_> {
         if self.is_decided(f) {
             return Found::None;
         }
-        if !f.broken && !rate.contains(0.0) {
+        if !f.breaks.any() && !rate.contains(0.0) {
             return Found::Monotone(rate);
         }
         if b - a <= shortest {
             return Found::Undecided;
         }
-        if f.broken {
+        if f.breaks.undefined() {
             return Found::Open;
         }
         let m = 0.5 * (a + b);
         let at_m = self.enclose(Enclosure::point(m));
+        if f.breaks.any() {
+            let known = (&self.room.slopes[..], &self.room.enclosures[..]);
+            let place = jumps::first(&self.formula.steps, [a, b], known.0, known.1, shortest);
+            return place.map_or(Found::Open, Found::Jump);
+        }
         let reach = Enclosure::new(a, b) - Enclosure::point(m);
         f = f.intersect(at_m + rate.times(reach));
         // The mean value form may overflow where the values do not.
-        f.broken = false;
+        f.breaks = Breaks::NONE;
         match f {
             f if self.is_decided(f) => Found::None,
             f if !self.is_decided(at_m) && f.width() <= tolerance::FLAT * at_m.width() => Found::Undecided,
@@ -140,6 +148,11 @@ impl Line<'_> {
                 Found::Open if a < m && m < b => {
                     cells.push((m, b));
                     cells.push((a, m));
+                    continue;
+                }
+                Found::Jump([lo, hi]) => {
+                    let parts = [(hi, b), (lo, hi), (a, lo)];
+                    cells.extend(parts.into_iter().filter(|(from, to)| from < to));
                     continue;
                 }
                 Found::Open | Found::Undecided => {
@@ -185,7 +198,7 @@ impl Line<'_> {
         let least = |rate: Enclosure| rate.lo.abs().min(rate.hi.abs());
         let wide = value / least(rate);
         let near = self.slope(Enclosure::new(s - wide, s + wide));
-        if near.value.broken || near.rate.contains(0.0) { wide } else { value / least(near.rate) }
+        if near.value.breaks.any() || near.rate.contains(0.0) { wide } else { value / least(near.rate) }
     }
 
     /// Two neighbouring numbers of unlike signs between two places of unlike signs: the one with the smaller value.

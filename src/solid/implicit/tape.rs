@@ -1,13 +1,14 @@
 //! Values of a formula: at a point, with the gradient there, and over a stretch of a ray with the derivative along it.
 //!
 //! A value that is not finite is undefined, and so is all that is made of it: at a point it is NaN, over a stretch the
-//! enclosure is broken ([`Enclosure`]). The derivative is that of forward mode automatic differentiation (Griewank and
+//! enclosure says so ([`Enclosure`]). The derivative is that of forward mode automatic differentiation (Griewank and
 //! Walther 2008, chapter 3); where a function has a kink (`abs`, `min`, `max`) an enclosure holds the slopes of both
-//! sides. Values at a point lie in the enclosures of every stretch around it: operation by operation both are rounded
+//! sides, and where it jumps (`floor`) it says so and holds the slopes before and after. Values at a point lie in the enclosures of every stretch around it: operation by operation both are rounded
 //! from the same exact results. Oracle: `tests/solid_implicit.rs` compares values, slopes and differences.
 
 use glam::DVec3;
 
+use crate::geom::tolerance;
 use crate::num::enclosure::{Enclosure, integer_power};
 use crate::scene::formula::{One, Step, Two};
 
@@ -23,8 +24,8 @@ pub(super) struct Slope {
 pub struct Room {
     values: Vec<f64>,
     gradients: Vec<(f64, DVec3)>,
-    enclosures: Vec<Enclosure>,
-    slopes: Vec<Slope>,
+    pub(super) enclosures: Vec<Enclosure>,
+    pub(super) slopes: Vec<Slope>,
     pub(super) cells: Vec<(f64, f64)>,
     pub(super) roots: Vec<super::roots::Root>,
 }
@@ -42,6 +43,9 @@ fn one(op: One, a: f64) -> f64 {
         One::Acos => libm::acos(a),
         One::Exp => libm::exp(a),
         One::Ln => libm::log(a),
+        One::Floor => a.floor(),
+        One::Ceil => a.ceil(),
+        One::Round => a.round(),
     }
 }
 
@@ -87,8 +91,22 @@ pub(super) fn value(steps: &[Step], p: DVec3, room: &mut Room) -> f64 {
     values.last().copied().unwrap_or(f64::NAN)
 }
 
-/// The value and the gradient of a formula at a point; of a kink the gradient of one side.
-pub(super) fn gradient(steps: &[Step], p: DVec3, room: &mut Room) -> (f64, DVec3) {
+/// The slope of a function where it jumps: what goes on beside a jump is nothing to it, so that the surface there is
+/// the one that the jump makes.
+const JUMP: f64 = (1u64 << 40) as f64;
+
+/// The rate of a function of one number with value x; `reach` is how far the number may be from where it is meant.
+fn rate_near(op: One, a: f64, x: f64, reach: f64) -> f64 {
+    let reach = reach + tolerance::NOISE * tolerance::EPS * a.abs();
+    match op {
+        One::Floor | One::Ceil | One::Round if one(op, a - reach) < one(op, a + reach) => JUMP,
+        _ => rate_of_one(op, a, x),
+    }
+}
+
+/// The value and the gradient of a formula at a point, or at most `reach` beside it; of a kink the gradient of one side,
+/// of a jump that of what jumps, enlarged by [`JUMP`].
+pub(super) fn gradient(steps: &[Step], p: DVec3, reach: DVec3, room: &mut Room) -> (f64, DVec3) {
     let known = &mut room.gradients;
     known.clear();
     for step in steps {
@@ -99,7 +117,7 @@ pub(super) fn gradient(steps: &[Step], p: DVec3, room: &mut Room) -> (f64, DVec3
             Step::One(op, a) => {
                 let (a, g) = at(a);
                 let x = one(op, a);
-                (x, g * rate_of_one(op, a, x))
+                (x, g * rate_near(op, a, x, g.dot(reach).abs()))
             }
             Step::Two(op, a, b) => {
                 let ((a, ga), (b, gb)) = (at(a), at(b));
@@ -132,6 +150,7 @@ fn rate_of_one(op: One, a: f64, x: f64) -> f64 {
         One::Acos => -1.0 / ((1.0 - a) * (1.0 + a)).sqrt(),
         One::Exp => x,
         One::Ln => 1.0 / a,
+        One::Floor | One::Ceil | One::Round => 0.0,
     }
 }
 
@@ -183,6 +202,9 @@ fn enclose_one(op: One, a: Enclosure) -> Enclosure {
         One::Acos => a.acos(),
         One::Exp => a.exp(),
         One::Ln => a.ln(),
+        One::Floor => a.whole(f64::floor),
+        One::Ceil => a.whole(f64::ceil),
+        One::Round => a.whole(f64::round),
     }
 }
 
@@ -243,6 +265,7 @@ fn slope_of_one(op: One, a: Slope) -> Slope {
         One::Acos => -a.rate.over(((one - a.value).times(one + a.value)).sqrt()),
         One::Exp => value.times(a.rate),
         One::Ln => a.rate.over(a.value),
+        One::Floor | One::Ceil | One::Round => Enclosure::point(0.0),
     };
     Slope { value, rate }
 }
