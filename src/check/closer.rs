@@ -8,6 +8,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::evidence::Seen;
+use super::flush;
 use super::lines::{WORK, through};
 use crate::csg::{Expr, Leaf, Object, Scratch, Spans};
 use crate::geom::{Aabb, Interval, Ray};
@@ -92,7 +93,7 @@ fn is_met(leaf: &Leaf, scratch: &mut Scratch) -> bool {
 #[derive(Debug, Default)]
 pub(super) struct Closer {
     pub rays: Vec<Ray>,
-    /// Operands of cuts that are looked at, or need not be, as their boxes do not meet: only of these it is told that they seem
+    /// Operands of cuts, and what is where operands meet, that are looked at, or need not be, as their boxes do not meet: only of these it is told that they seem
     /// to do nothing.
     pub pieces: BTreeSet<Span>,
     /// Solids drawn.
@@ -107,8 +108,8 @@ struct Pair {
 }
 
 /// Lines at what seems to be nothing, to cut nothing, or to keep clear of something else: between the middles of the shapes that
-/// may meet, where they meet first and leave each other last, about the middle of where their boxes do, and close to the
-/// corners of what seems to be cut away whole. `nodes` is the size of the object's expression.
+/// may meet, where they meet first and leave each other last, about the middle of where their boxes do, close to the corners of
+/// what seems to be cut away whole, and across faces that may coincide ([`flush`]). `nodes` is the size of the object's expression.
 pub(super) fn closer(object: &Object, outline: &Outline, nodes: usize, seen: &Seen) -> Closer {
     let leaves = object.leaves();
     let boxes = |range: &Range<u32>| -> Vec<Aabb> {
@@ -125,6 +126,9 @@ pub(super) fn closer(object: &Object, outline: &Outline, nodes: usize, seen: &Se
             closer.rays.extend(rays);
         }
     }
+    let flush = flush::lines(object, most / 4);
+    most -= flush.len();
+    closer.rays.extend(flush);
     let (mut pairs, mut places) = (pairs(outline, seen), 0);
     // Sides whose boxes do not meet cost nothing. One side stands in many pairs.
     let mut extents = HashMap::new();
@@ -168,6 +172,8 @@ fn pairs(outline: &Outline, seen: &Seen) -> Vec<Pair> {
         };
         pairs.extend(cut.cutters.iter().filter(idle).map(pair));
     }
+    let unmet = outline.meetings.iter().filter(|meeting| !seen.meetings.contains(&meeting.at));
+    pairs.extend(unmet.map(|m| Pair { sides: m.sides.clone(), pieces: vec![m.at], part: None }));
     let empty = outline.parts.iter().zip(0..).filter(|(_, i)| !seen.parts.contains(i));
     let alone = |(part, i): (&Part, u32)| Pair {
         sides: [part.leaves.clone(), part.leaves.clone()],

@@ -26,7 +26,7 @@ fn find(evidence: &Evidence) -> Vec<Diagnostic> {
         let sizes = [a, b].map(|leaf| evidence.leaves[*leaf as usize].bounds.diagonal());
         let scale = place.farthest();
         let size = sizes.into_iter().filter(|size| size.is_finite()).fold(scale, f64::min);
-        tolerance::touch(scale, size) < place.diagonal()
+        tolerance::touch(tolerance::cleanup(scale), size) < place.diagonal()
     };
     let shared = seen.shared.iter().filter(is_area).map(|(pair, _)| pair);
     let shared = shared.filter(|pair| !seen.films.contains_key(pair));

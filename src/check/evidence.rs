@@ -39,13 +39,18 @@ pub(super) struct Seen {
     /// Leaves whose faces stand nearer somewhere than the clean-up tells apart, but further than faces that are meant to
     /// coincide; a leaf with itself where it is as thin as that by itself. Whether it is a film there, not a slit.
     pub films: BTreeMap<(u32, u32), bool>,
+    /// Leaves whose faces stand further apart than that, but nearer than anybody builds ([`tolerance::skin`]): a box around
+    /// where, and whether it is a film there.
+    pub skins: BTreeMap<(u32, u32), (Aabb, bool)>,
     /// Pairs of solids drawn, and a box around where lines were inside both.
     pub overlaps: BTreeMap<(u32, u32), Aabb>,
     /// Sheets that are nothing ([`closer::nothing_open`]).
     pub gone: BTreeSet<u32>,
+    /// Intersections and symmetric differences that a line was inside.
+    pub meetings: BTreeSet<Span>,
     /// Cutters that took something away.
     pub cutting: BTreeSet<Span>,
-    /// Operands of cuts and solids drawn that seemed to do nothing, or to be nothing, and were looked at closer.
+    /// Operands of cuts, intersections, symmetric differences and solids drawn that seemed to do nothing, or to be nothing, and were looked at closer.
     pub looked_at: BTreeSet<Span>,
     pub looked_at_parts: BTreeSet<u32>,
     /// Bases that a line was inside.
@@ -69,11 +74,16 @@ impl Seen {
             *known = known.union(place);
         }
         o.films.into_iter().for_each(|(pair, film)| *self.films.entry(pair).or_default() |= film);
+        for (pair, (place, film)) in o.skins {
+            let known = self.skins.entry(pair).or_default();
+            *known = (known.0.union(place), known.1 | film);
+        }
         self.gone.extend(o.gone);
         for (pair, place) in o.overlaps {
             let known = self.overlaps.entry(pair).or_default();
             *known = known.union(place);
         }
+        self.meetings.extend(o.meetings);
         self.cutting.extend(o.cutting);
         self.bases.extend(o.bases);
         self.left.extend(o.left);
@@ -124,6 +134,7 @@ struct Witness<'a> {
     state: State,
     scratch: Scratch,
     cuts: Vec<CutSeen>,
+    meetings: Vec<bool>,
 }
 
 /// What was seen of a cut.
@@ -149,12 +160,15 @@ impl<'a> Witness<'a> {
             state: State::default(),
             scratch: Scratch::default(),
             cuts: outline.cuts.iter().map(CutSeen::new).collect(),
+            meetings: vec![false; outline.meetings.len()],
         }
     }
 
     /// All that was seen, operands of cuts by their places.
     fn finish(self) -> Seen {
         let mut seen = self.seen;
+        let met = self.outline.meetings.iter().zip(&self.meetings).filter(|(_, held)| **held);
+        seen.meetings.extend(met.map(|(meeting, _)| meeting.at));
         for (cut, found) in self.outline.cuts.iter().zip(&self.cuts) {
             let base = cut.base.as_ref().map(|base| base.at);
             seen.bases.extend(base.filter(|_| found.base));
@@ -222,9 +236,24 @@ impl<'a> Witness<'a> {
         built.then_some((a.leaf.min(b.leaf), a.leaf.max(b.leaf)))
     }
 
+    /// The size that the thickness of what two leaves leave is held against: of the larger, or how far they reach.
+    fn size(&self, pair: [u32; 2]) -> f64 {
+        let leaves = pair.map(|i| &self.object.leaves()[i as usize]);
+        let sizes = leaves.map(|leaf| leaf.bounds.diagonal()).into_iter().filter(|size| size.is_finite());
+        sizes.reduce(f64::max).unwrap_or_else(|| leaves[0].scale().max(leaves[1].scale()))
+    }
+
+    /// The leaves of a stretch that is not thin to the clean-up, but thinner than anybody builds of two: one shape as thin
+    /// was written so.
+    fn skin_of(&self, a: &Event, b: &Event, ray: &Ray) -> Option<(u32, u32)> {
+        let thickness = (b.t - a.t) * ray.dir.length() * a.slope.max(b.slope);
+        let is_skin = a.leaf != b.leaf && thickness <= tolerance::skin(self.size([a.leaf, b.leaf]));
+        is_skin.then_some((a.leaf.min(b.leaf), a.leaf.max(b.leaf)))
+    }
+
     /// The stretches between crossings, the unbounded ones included.
     fn stretches(&mut self, events: &[Event], ray: &Ray) {
-        let mut films = Films::default();
+        let (mut films, mut skins) = (Films::default(), Films::default());
         for i in 0..=events.len() {
             let (before, after) = (i.checked_sub(1).map(|i| &events[i]), events.get(i));
             if let Some(event) = before {
@@ -239,6 +268,12 @@ impl<'a> Witness<'a> {
             let film = thin.and_then(|(a, b)| self.film_of(a, b, ray));
             if let Some(pair) = films.next(any, film) {
                 *self.seen.films.entry(pair).or_default() |= !any;
+            }
+            let skin = before.zip(after).filter(|_| thin.is_none());
+            let skin = skin.and_then(|(a, b)| self.skin_of(a, b, ray));
+            if let (Some(pair), Some(at)) = (skins.next(any, skin), before) {
+                let (place, film) = self.seen.skins.entry(pair).or_default();
+                (*place, *film) = (place.including(ray.at(at.t)), *film | !any);
             }
             if thin.is_none() {
                 let end = |e: Option<&Event>, none: f64| e.map_or(DVec3::splat(none), |e| ray.at(e.t));
@@ -261,6 +296,9 @@ impl<'a> Witness<'a> {
             }
         }
         seen.parts.extend(parts);
+        for (found, node) in self.meetings.iter_mut().zip(&self.logic.meetings) {
+            *found |= node.is_some_and(|n| holds[n as usize]);
+        }
         for (found, nodes) in self.cuts.iter_mut().zip(&self.logic.cuts) {
             let held = |node: &Option<u32>| node.is_some_and(|n| holds[n as usize]);
             let in_base = held(&nodes.base);

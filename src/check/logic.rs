@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use crate::csg::Expr;
-use crate::prepare::{Outline, Piece};
+use crate::prepare::{Meeting, Outline, Piece};
 
 /// How a node combines those below it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -46,6 +46,8 @@ pub(super) struct Logic {
     pub parts: Vec<u32>,
     /// As in the outline.
     pub cuts: Vec<CutNodes>,
+    /// As in the outline.
+    pub meetings: Vec<Option<u32>>,
 }
 
 /// What holds, and what tells, for some leaves.
@@ -88,8 +90,9 @@ impl Logic {
             let sum = &mut nodes[above].leaves;
             *sum = (sum.0.min(own.0), sum.1.max(own.1));
         }
-        let mut logic = Logic { nodes, parts, cuts: Vec::new() };
+        let mut logic = Logic { nodes, parts, cuts: Vec::new(), meetings: Vec::new() };
         logic.find_cuts(outline);
+        logic.find_meetings(outline);
         logic
     }
 
@@ -122,6 +125,15 @@ impl Logic {
             let cutters = cut.cutters.iter().map(|c| take(&mut cutters, c)).collect();
             self.cuts.push(CutNodes { base, cutters });
         }
+    }
+
+    /// Finds intersections and symmetric differences by their leaves: of several nodes with the same leaves each holds where
+    /// the others do, one operand of one being the whole other.
+    fn find_meetings(&mut self, outline: &Outline) {
+        let met = self.nodes.iter().zip(0..).filter(|(n, _)| matches!(n.kind, Kind::And | Kind::Xor));
+        let known: HashMap<(u32, u32), u32> = met.map(|(node, i)| (node.leaves, i)).collect();
+        let node = |m: &Meeting| known.get(&(m.leaves.start, m.leaves.end)).copied();
+        self.meetings = outline.meetings.iter().map(node).collect();
     }
 
     /// Says what holds and what tells where these leaves are inside.

@@ -11,6 +11,7 @@ mod dead_cutter;
 mod empty;
 mod evidence;
 mod film;
+mod flush;
 mod lines;
 mod logic;
 mod overlap;

@@ -31,10 +31,16 @@ pub fn cleanup(scale: f64) -> f64 {
 /// times smaller: 2^-250, where 2^-1022 is the smallest such number.
 pub const SMALLEST: f64 = f64::from_bits((1023 - 250) << 52);
 
-/// Round faces of some size that touch at a point stand within the clean-up of each other as far from it as the root of its
-/// product with the size says; faces that seem to coincide over sixteen times that coincide over an area.
-pub fn touch(scale: f64, size: f64) -> f64 {
-    16.0 * (cleanup(scale) * size).sqrt()
+/// Round faces of some size that touch at a point stand within a thickness of each other as far from it as the root of its
+/// product with the size says; faces that stand so near over sixteen times that do so over an area.
+pub fn touch(thickness: f64, size: f64) -> f64 {
+    16.0 * (thickness * size).sqrt()
+}
+
+/// What is thinner than this, of shapes of some size, is drawn if the clean-up leaves it, but hardly meant: a user who asks
+/// for scans no more exact than [`POINTS`] does not build walls as thin.
+pub fn skin(size: f64) -> f64 {
+    POINTS * size
 }
 
 /// Two faces that are meant to coincide stand apart by less than this, world length: 3.6 units of `EPS` times the scale were

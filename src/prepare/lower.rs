@@ -76,7 +76,13 @@ const TOP: Context = Context {
 /// A lowered shape.
 pub(super) enum Lowered {
     Solid(Expr),
-    Sheets(Vec<Leaf>),
+    Sheets(Vec<Open>),
+}
+
+/// A sheet, and the place of what made it: its call, or what it is clipped by.
+pub(super) struct Open {
+    pub leaf: Leaf,
+    pub at: Span,
 }
 
 impl<'b, 'o> Lowering<'b, 'o> {
@@ -100,8 +106,8 @@ impl<'b, 'o> Lowering<'b, 'o> {
         let solid = match self.lower(shape, TOP)? {
             Lowered::Solid(expr) => Some(expr),
             Lowered::Sheets(sheets) => {
-                self.outline.sheets.extend(sheets.iter().map(|_| at));
-                self.sheets.extend(sheets);
+                self.outline.sheets.extend(sheets.iter().map(|sheet| [at, sheet.at]));
+                self.sheets.extend(sheets.into_iter().map(|sheet| sheet.leaf));
                 None
             }
         };
@@ -155,6 +161,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
         }
         let mut parts = Vec::with_capacity(operands.len());
         let mut cut = self.outline.begin_cut(op);
+        let mut ends = vec![self.leaves.len() as u32];
         for (i, operand) in operands.iter().enumerate() {
             let taken = op == BooleanOp::Complement || (op == BooleanOp::Difference && 0 < i);
             let context = Context {
@@ -170,6 +177,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
             if let Some(cut) = &mut cut {
                 self.outline.add_to_cut(*cut, taken, operand.at, first..self.leaves.len() as u32);
             }
+            ends.push(self.leaves.len() as u32);
         }
         if op == BooleanOp::Union && parts.iter().any(|p| matches!(p.0, Lowered::Sheets(_))) {
             return joined_sheets(parts);
@@ -181,6 +189,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
                 Lowered::Sheets(sheets) => return Err(no_inside(op.sign(), at, &words(&sheets))),
             }
         }
+        self.outline.add_meeting(op, shape.0.at, &ends);
         Ok(Lowered::Solid(combined(op, exprs)))
     }
 
@@ -199,7 +208,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
         leaf.cutter = context.cutter;
         leaf.rank = u64::from(call.at.file.0) << 32 | u64::from(call.at.start);
         if solid.body() == Body::Sheet {
-            return Ok(Lowered::Sheets(vec![leaf]));
+            return Ok(Lowered::Sheets(vec![Open { leaf, at: call.at }]));
         }
         let own = self.push(leaf, call.at);
         let Some((by, bounding)) = bounded_by(call) else { return Ok(Lowered::Solid(own)) };
@@ -242,12 +251,12 @@ impl<'b, 'o> Lowering<'b, 'o> {
             Lowered::Sheets(sheets) => return Err(no_inside(".clip", by.at, &words(&sheets))),
         };
         let outline = cutter.outline.of_one(by.at, &expr, within);
-        let by = Arc::new(Object::new(cutter.leaves, &expr));
+        let (by, by_at) = (Arc::new(Object::new(cutter.leaves, &expr)), by.at);
         self.outline.add_inner(&by, outline);
         let mut clipped = Lowering::new(self.builder, self.measure_all);
         let sheets = match clipped.lower(child, own)? {
             Lowered::Sheets(sheets) => {
-                sheets.into_iter().map(|s| (s.clone(), Clippee::Sheet(s.into()))).collect()
+                sheets.into_iter().map(|s| (s.leaf.clone(), Clippee::Sheet(s.leaf.into()))).collect()
             }
             Lowered::Solid(expr) => {
                 let outline = clipped.outline.of_one(child.0.at, &expr, Aabb::ALL);
@@ -260,7 +269,8 @@ impl<'b, 'o> Lowering<'b, 'o> {
         };
         let sheet = |(leaf, of): (Leaf, Clippee)| {
             let clipped = Leaf::new(Arc::new(Clipped { of, by: by.clone(), within }), Placement::IDENTITY);
-            Leaf { solid: clipped.solid, place: clipped.place, bounds: clipped.bounds, ..leaf }
+            let leaf = Leaf { solid: clipped.solid, place: clipped.place, bounds: clipped.bounds, ..leaf };
+            Open { leaf, at: by_at }
         };
         Ok(Lowered::Sheets(sheets.into_iter().map(sheet).collect()))
     }
@@ -432,8 +442,8 @@ fn joined_sheets(parts: Vec<(Lowered, Span)>) -> Result<Lowered, Diagnostic> {
 }
 
 /// What to say of the first sheet.
-fn words(sheets: &[Leaf]) -> String {
-    sheets.first().map_or_else(String::new, |leaf| leaf.solid.sheet_words())
+fn words(sheets: &[Open]) -> String {
+    sheets.first().map_or_else(String::new, |sheet| sheet.leaf.solid.sheet_words())
 }
 
 fn no_inside(sign: &str, at: Span, why: &str) -> Diagnostic {

@@ -37,7 +37,7 @@ use crate::solid::{Counts, table};
 use build::Builder;
 use groups::Groups;
 use lower::Lowering;
-pub use outline::{Cutting, Outline, Part, Piece};
+pub use outline::{Cutting, Meeting, Outline, Part, Piece};
 
 /// What the command line has to say about a scene.
 #[derive(Clone, Debug, Default)]

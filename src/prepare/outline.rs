@@ -17,8 +17,10 @@ pub struct Outline {
     pub cuts: Vec<Cutting>,
     /// For each leaf of the world's object the place of the call that made it.
     pub calls: Vec<Span>,
-    /// For each sheet of the world the place of what is drawn.
-    pub sheets: Vec<Span>,
+    /// Intersections and symmetric differences of two or more, the inner before the outer.
+    pub meetings: Vec<Meeting>,
+    /// For each sheet of the world the place of what is drawn, and that of its call or of what it is clipped by.
+    pub sheets: Vec<[Span; 2]>,
     /// The solids of `.clip`, which stand in sheets: what is clipped and what clips, each with its own places.
     pub inner: Vec<(Arc<Object>, Outline)>,
 }
@@ -43,6 +45,17 @@ pub struct Cutting {
     pub base: Option<Piece>,
     /// What is taken away.
     pub cutters: Vec<Piece>,
+}
+
+/// An intersection or a symmetric difference.
+#[derive(Clone, Debug)]
+pub struct Meeting {
+    /// Its place.
+    pub at: Span,
+    /// The leaves it was made of.
+    pub leaves: Range<u32>,
+    /// Leaves that meet where anything of it is: those of the first operand and of the others, or all and all.
+    pub sides: [Range<u32>; 2],
 }
 
 /// An operand.
@@ -76,6 +89,23 @@ impl Outline {
             self.cuts.push(Cutting { base: None, cutters: Vec::new() });
             self.cuts.len() - 1
         })
+    }
+
+    /// Adds what is where its operands meet, or differ; `ends` are where each operand's leaves end, and before them where the
+    /// first's begin.
+    pub(super) fn add_meeting(&mut self, op: BooleanOp, at: Span, ends: &[u32]) {
+        let &[first, middle, .., last] = ends else { return };
+        let (leaves, rest) = (first..last, middle..last);
+        match op {
+            BooleanOp::Intersection => {
+                self.meetings.push(Meeting { at, leaves, sides: [first..middle, rest] })
+            }
+            BooleanOp::Xor => {
+                let sides = [leaves.clone(), leaves.clone()];
+                self.meetings.push(Meeting { at, leaves, sides })
+            }
+            _ => {}
+        }
     }
 
     /// Adds an operand.
