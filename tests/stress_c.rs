@@ -163,10 +163,10 @@ fn c9_far_tori_keep_their_digits_and_their_parity() {
     }
 }
 
-/// 200,000 rays at tori of all proportions (a million with PSS_LONG) from all distances: none has an odd number of roots.
+/// A million rays at tori of all proportions from all distances: none has an odd number of roots.
 #[test]
 fn c9_no_ray_meets_a_torus_an_odd_number_of_times() {
-    let rays = if std::env::var_os("PSS_LONG").is_some() { 1_000_000 } else { 200_000 };
+    let rays = 1_000_000;
     let mut stream = Stream::new(10);
     let began = Instant::now();
     let mut hits = 0;
@@ -185,7 +185,7 @@ fn c9_no_ray_meets_a_torus_an_odd_number_of_times() {
         hits += found.len();
     }
     println!("c9: {:.0} ns a ray, {hits} crossings", began.elapsed().as_secs_f64() * 1e9 / f64::from(rays));
-    assert!(hits > 100_000);
+    assert!(hits > 500_000);
 }
 
 #[test]
@@ -245,7 +245,7 @@ fn c16_rays_at_rims_meet_one_span_or_none() {
         ["cylinder(r: 1, h: 2)", "cone(r1: 1, r2: 0.3, h: 2)", "cone(r1: 1, r2: 0, h: 2)"].map(solid);
     let mut stream = Stream::new(16);
     let mut met = 0;
-    for i in 0..300_000 {
+    for i in 0..1_000_000 {
         let solid = &solids[i % 3];
         let (top, turn) = (stream.unit() < 0.5, std::f64::consts::TAU * stream.unit());
         let r = if top { [1.0, 0.3, 0.0][i % 3] } else { 1.0 };
@@ -256,7 +256,7 @@ fn c16_rays_at_rims_meet_one_span_or_none() {
         assert!(!inside && (found.is_empty() || found.len() == 2), "{ray:?} {found:?}");
         met += found.len();
     }
-    assert!(met > 100_000);
+    assert!(met > 400_000);
 }
 
 #[test]
@@ -397,6 +397,8 @@ fn c22_rays_that_are_none_meet_nothing() {
         }
     }
     assert_eq!(scratch.solid.counts.invalid_rays, 15 * subjects().len() as u64);
+    // They cost no more than being looked at: no leaf is asked.
+    assert_eq!(scratch.solid.counts.leaf_queries, 0);
 }
 
 /// All 26 directions along axes and diagonals, zeros of either sign: a mirrored ray meets a mirrored solid alike.
@@ -426,7 +428,7 @@ fn c23_zeros_of_either_sign_and_mirrored_directions_give_the_same_bits() {
                 let minus = DVec3::select(d.cmpeq(DVec3::ZERO), DVec3::splat(-0.0), d);
                 let signed = ts(&*s, &Ray::new(from * d.signum(), minus));
                 assert_eq!(t, signed, "{text} {d}");
-                near(&t, &folded, 4.0 * EPS * 4.0);
+                assert_eq!(t, folded, "{text} {d} {from}");
             }
         }
     }
@@ -453,13 +455,13 @@ fn c25_a_polytope_of_ten_thousand_faces() {
     let object = Object::new(leaves, &expr);
     let mut scratch = CsgScratch::default();
     let began = Instant::now();
-    for n in normals.iter().take(2) {
+    for n in &normals {
         let mut out = Vec::new();
         object.spans(&Ray::new(DVec3::ZERO, *n), Interval::AHEAD, &mut scratch, &mut out);
         assert!(out.len() == 1 && out[0].enter.is_none());
         assert!((out[0].interval().hi - 1.0).abs() <= 1e-12, "{:?}", out[0]);
     }
-    println!("c25: {:.2} ms a ray", began.elapsed().as_secs_f64() * 500.0);
+    println!("c25: {:.0} us a ray", began.elapsed().as_secs_f64() * 1e6 / normals.len() as f64);
 }
 
 /// Along the normal the moved boundary is met at its distance or, where another face is as near, later; mostly at it.

@@ -150,10 +150,11 @@ fn d4_long_and_thin_solids_keep_their_digits() {
 fn d5_t_survives_uneven_scales() {
     let (ball, egg) = (shot("draw sphere(r: 1).scale([4, 0.5, 2])"), solid("sphere(r: [4, 0.5, 2])"));
     let (mut scratch, mut stream) = (Scratch::default(), Stream::new(5));
-    for _ in 0..10_000 {
-        let at = dvec3(4.0, 0.5, 2.0) * 0.8 * cube(&mut stream);
+    for i in 0..20_000 {
+        let at = dvec3(4.0, 0.5, 2.0) * 0.55 * cube(&mut stream);
         let d = stream.direction() * 10f64.powf(6.0 * stream.unit() - 3.0);
-        let ray = Ray::new(at, d);
+        // From within, and from without: as many of its own lengths away as leave both ends ahead.
+        let ray = Ray::new(at - f64::from(i % 2) * 10.0 * d.normalize(), d);
         let have: Vec<f64> = ends(&ball, &ray, &mut scratch).iter().map(|e| e.0).collect();
         let want = ts(&*egg, &ray);
         let ulp = |t: f64| t.abs().next_up() - t.abs();
@@ -279,6 +280,15 @@ fn d10_sixty_four_transforms_and_their_inverses_are_none() {
     }
     let twin = scene(SCENE2, "");
     let unlike = compare(&twin, &scene(SCENE2, &(there + &back)), &DAffine3::IDENTITY, 1e-12, 2000);
+    assert_eq!(unlike, 0);
+    // Instances within instances, each back at the place of the one before the last.
+    let mut nested = String::new();
+    for _ in 0..64 {
+        let v = cube(&mut stream);
+        nested += &format!(".instance([[{:?}, {:?}, {:?}]]).rotate_z(31deg)", v.x, v.y, v.z);
+        nested += &format!(".rotate_z(-31deg).instance([[{:?}, {:?}, {:?}]])", -v.x, -v.y, -v.z);
+    }
+    let unlike = compare(&twin, &scene(SCENE2, &nested), &DAffine3::IDENTITY, 1e-12, 2000);
     assert_eq!(unlike, 0);
 }
 

@@ -12,7 +12,8 @@ pub fn quadratic(a: f64, b: f64, c: f64, discriminant: f64) -> Option<[f64; 2]> 
     if discriminant.is_nan() || discriminant <= 0.0 {
         return None;
     }
-    let q = -(b + discriminant.sqrt().copysign(b));
+    // Zeros of either sign are one: mirrored rays meet mirrored places.
+    let q = -(b + discriminant.sqrt().copysign(b + 0.0));
     let (t0, t1) = (q / a, if q == 0.0 { 0.0 } else { c / q });
     let (lo, hi) = if t0 < t1 { (t0, t1) } else { (t1, t0) };
     (lo < hi).then_some([lo, hi])

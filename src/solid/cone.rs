@@ -86,7 +86,7 @@ impl Cone {
         if 0.0 < a && discriminant <= 0.0 {
             return None;
         }
-        let q = -(b + discriminant.max(0.0).sqrt().copysign(b));
+        let q = -(b + discriminant.max(0.0).sqrt().copysign(b + 0.0));
         // Through the apex both roots are one.
         let (far, near) = (q / a, if q == 0.0 { q / a } else { c / q });
         let (lo, hi) = if far < near { (far, near) } else { (near, far) };
