@@ -99,3 +99,70 @@ finds! {
     parts_that_meet_are_not_told: "draw sphere(r: 1) & sphere(r: 1, at: [1.5,0,0])\ndraw (box(size: 2, at: [5,0,0]) & sphere(r: 1.2, at: [5,0,0])) - cylinder(r: 0.3, from: [5,0,-2], to: [5,0,2])\ndraw sphere(r: 1, at: [0, 0, 4]) | (half_space(z < 3) & box(size: 1, at: [0,0,3]))\n",
     r#""#
 }
+
+finds! { a_moved_cube_of_half_spaces_is_seen: "draw (half_space(x>0)&half_space(x<1)&half_space(y>0)&half_space(y<1)&half_space(z>0)&half_space(z<1)).move([100,0,0])\n" }
+
+finds! { a_moved_cylinder_of_a_quadric_is_seen: "draw (quadric(squares:[1,1,0],constant:-1) & half_space(z>0) & half_space(z<1)).move([50,20,10])\n" }
+
+finds! { a_small_cube_of_half_spaces_is_seen: "draw (half_space(x>0)&half_space(x<0.001)&half_space(y>0)&half_space(y<0.001)&half_space(z>0)&half_space(z<0.001))\n" }
+
+finds! { a_cube_as_a_complement_is_seen: "draw !(half_space(x<100)|half_space(x>101)|half_space(y<0)|half_space(y>1)|half_space(z<0)|half_space(z>1))\n" }
+
+finds! { the_tip_of_a_cone_is_seen: "draw cone(r1:1,r2:0,h:1) & half_space(z>0.95)\n" }
+
+finds! { a_cut_tip_is_seen: "draw cone(r1:1,r2:0,h:1) - half_space(z>0.999)\n" }
+
+finds! { a_cut_cap_is_seen: "draw sphere(r:1) - half_space(z>0.999)\n" }
+
+finds! { a_cap_of_a_thousandth_is_seen: "draw sphere(r:1) & half_space(z>0.999999)\n" }
+
+finds! { a_thin_ring_is_seen: "draw torus(major:5,minor:1) & half_space(z>0.9999999)\n" }
+
+finds! { a_corner_cube_is_seen: "draw intersection([box(size:2), half_space(x>0.97), half_space(y>0.97), half_space(z>0.97)])\n" }
+
+finds! { a_cut_corner_is_seen: "draw box(size:2) - (half_space(x>0.97)&half_space(y>0.97)&half_space(z>0.97))\n" }
+
+finds! { a_corner_behind_an_oblique_plane_is_seen: "draw box(size:2) & half_space(normal:[-1,-1,-1],at:[0.999,0.999,0.999])\n" }
+
+finds! { a_tip_of_an_extrusion_is_seen: "draw extrude([[0,0],[1,0],[1,1]], h:1, scale:0) & box([-1,-1,0.99],[1,1,2])\n" }
+
+finds! { a_cut_tip_of_an_extrusion_is_seen: "draw extrude([[0,0],[1,0],[1,1]], h:1, scale:0) - box([-1,-1,0.999],[1,1,2])\n" }
+
+finds! { a_groove_of_a_hundred_millionth_is_seen: "draw torus(major:1,minor:0.2) - cylinder(r:0.80000001, from:[0,0,-2], to:[0,0,2])\n" }
+
+finds! { an_apex_is_no_film: "draw cone(r1:1,r2:0,h:1) & box([-1,-1,0.9999],[1,1,2])\n" }
+
+finds! { a_small_tip_is_no_film: "draw cone(r1:1,r2:0,h:1) & box([-1,-1,0.999999],[1,1,2])\n" }
+
+finds! { a_complement_of_a_complement_is_seen: "draw !(!box([100,0,0],[101,1,1]))\n" }
+
+/// What does not meet, by little, is told all the same.
+#[test]
+fn what_stops_short_is_told() {
+    for (scene, code) in [
+        ("draw sphere(r: 1) - half_space(z > 1.0001)", "W0122"),
+        ("draw sphere(r: 1) & half_space(z > 1.0001)", "W0123"),
+        ("draw box(size: 2) & half_space(normal: [-1, -1, -1], at: [1.001, 1.001, 1.001])", "W0123"),
+        ("draw sphere(r: 1) - cylinder(r: 0.2, from: [0, 0, 1.00001], to: [0, 0, 3])", "W0122"),
+        ("draw box(size: 1).rotate_x(30deg).rotate_y(40deg) & half_space(z > 0.8447)", "W0123"),
+        ("draw torus(major: 1, minor: 0.2) - cylinder(r: 0.7999, from: [0, 0, -2], to: [0, 0, 2])", "W0122"),
+        ("draw sphere(r: 1)\ndraw half_space(z > 0.999)", "W0126"),
+    ] {
+        let found = check_support::findings(scene);
+        assert!(found.starts_with(&format!("warning[{code}]")), "{scene}\n{found}");
+        assert_eq!(found.matches("warning[").count(), 1, "{scene}\n{found}");
+    }
+}
+
+/// Hundreds of copies at one place, and shells in shells, are looked at in a bounded number of steps, and told as few are.
+#[test]
+fn many_faces_at_one_place_are_told_as_few_are() {
+    let copies = |n: usize| format!("let s = sphere(r: 1)\ndraw union([{}])\n", vec!["s"; n].join(", "));
+    let told = |scene: &str| check_support::findings(scene).lines().next().unwrap_or_default().to_owned();
+    assert_eq!(told(&copies(400)), told(&copies(3)));
+    let shells = |n: usize| {
+        let more = (2..=n).map(|i| format!("let s{i} = sphere(r: {i}) - s{}\n", i - 1));
+        format!("let s1 = sphere(r: 1)\n{}draw s{n}\n", more.collect::<String>())
+    };
+    assert_eq!(check_support::findings(&shells(150)), "");
+}

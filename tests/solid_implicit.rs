@@ -387,6 +387,14 @@ fn a_formula_that_is_zero_up_to_rounding_ends_and_is_counted() {
 
 #[test]
 fn normals_point_out_at_kinks_poles_and_ends_of_the_domain() {
+    // A pole's face stands across the axis along which the formula has it, however the ray comes.
+    let pole = solid("1 / x <= y", 2.0);
+    for dir in [DVec3::new(1.0, 0.1, 0.05), DVec3::new(1.0, -0.3, 0.2), DVec3::new(3.0, 0.03, 0.01)] {
+        let ray = Ray::new(DVec3::new(-1.0, 0.5, 0.3), dir);
+        let at_pole = crossings(&pole, &ray).into_iter().find(|c| ray.at(c.t).x.abs() < 1e-9).unwrap();
+        let n = pole.normal(&ray, &at_pole, &mut Scratch::default());
+        assert!((n - DVec3::X).length() < 1e-9, "{n}");
+    }
     for condition in ["abs(x) <= 0.5", "sqrt(x + 0.5) <= 1", "1 / x <= 1", "sqrt(x**2 + y**2 + z**2) <= 0.5"]
     {
         let made = solid(condition, 2.0);

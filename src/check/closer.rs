@@ -1,18 +1,20 @@
 //! A closer look at what the first lines did not see, before anything is said of it: shapes may be small in their boxes, and
 //! what two of them leave of each other smaller still.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::evidence::Seen;
 use super::flush;
 use super::lines::{WORK, through};
+use super::logic::Logic;
+use super::seen::Seen;
+use super::summit;
 use crate::csg::{Expr, Leaf, Object, Scratch, Spans};
 use crate::geom::{Aabb, Interval, Ray};
-use crate::prepare::{Outline, Part, Piece};
+use crate::prepare::{Outline, Piece};
 use crate::source::Span;
 
 /// Lines through the box of a shape alone: one that fills a thousandth of its box as a line sees it is missed once in seven
@@ -31,7 +33,7 @@ const CORNERED: usize = 4;
 const INSETS: i32 = 16;
 
 /// The part of the first lines' work that may be spent on it is one in so many.
-const SHARE: u64 = 4;
+pub(super) const SHARE: u64 = 4;
 
 /// Along the axes but for a little: in a plane of symmetry edges are met, where faces seem to coincide.
 const ABOUT: [[f64; 3]; 3] = [[1.0, 0.123, 0.077], [0.077, 1.0, 0.123], [0.123, 0.077, 1.0]];
@@ -100,27 +102,30 @@ pub(super) struct Closer {
     pub parts: BTreeSet<u32>,
 }
 
-/// Two sides between which lines are sent, and what is known then.
+/// Two sides between which lines are sent, the box they can meet in, and what is known then.
 struct Pair {
     sides: [Range<u32>; 2],
+    region: Aabb,
     pieces: Vec<Span>,
     part: Option<u32>,
 }
 
 /// Lines at what seems to be nothing, to cut nothing, or to keep clear of something else: between the middles of the shapes that
-/// may meet, where they meet first and leave each other last, about the middle of where their boxes do, close to the corners of
-/// what seems to be cut away whole, and across faces that may coincide ([`flush`]). `nodes` is the size of the object's expression.
-pub(super) fn closer(object: &Object, outline: &Outline, nodes: usize, seen: &Seen) -> Closer {
+/// may meet, where they meet first and leave each other last, about the middle of where they can, at the summits of shapes there
+/// ([`summit`]), close to the corners of what seems to be cut away whole, and across faces that may coincide ([`flush`]).
+/// `extents` are boxes around the nodes of the expression.
+pub(super) fn closer(
+    object: &Object,
+    outline: &Outline,
+    (logic, extents): (&Logic, &[[Aabb; 2]]),
+    seen: &Seen,
+) -> Closer {
     let leaves = object.leaves();
-    let boxes = |range: &Range<u32>| -> Vec<Aabb> {
-        let own = leaves[range.start as usize..range.end as usize].iter().map(|leaf| leaf.bounds);
-        own.filter(|b| b.is_finite() && !b.is_empty()).collect()
-    };
+    let own = |range: &Range<u32>| &leaves[range.start as usize..range.end as usize];
     let mut closer = Closer::default();
-    let mut most = (WORK / SHARE / nodes.max(1) as u64) as usize;
+    let mut most = (WORK / SHARE / logic.len().max(1) as u64) as usize;
     for base in eaten(outline, seen) {
-        let own = &leaves[base.start as usize..base.end as usize];
-        let rays: Vec<Ray> = own.iter().take(CORNERED).flat_map(corners).collect();
+        let rays: Vec<Ray> = own(&base).iter().take(CORNERED).flat_map(corners).collect();
         if rays.len() <= most / 2 {
             most -= rays.len();
             closer.rays.extend(rays);
@@ -129,20 +134,27 @@ pub(super) fn closer(object: &Object, outline: &Outline, nodes: usize, seen: &Se
     let flush = flush::lines(object, most / 4);
     most -= flush.len();
     closer.rays.extend(flush);
-    let (mut pairs, mut places) = (pairs(outline, seen), 0);
-    // Sides whose boxes do not meet cost nothing. One side stands in many pairs.
-    let mut extents = HashMap::new();
+    let (mut pairs, mut places) = (pairs(outline, logic, extents, seen), 0);
+    // Sides that cannot meet cost nothing; of those that may meet without an end nothing is known.
     pairs.retain(|pair| {
-        let mut extent =
-            |side: &Range<u32>| *extents.entry(side.clone()).or_insert_with(|| union(&boxes(side)));
-        let [a, b] = pair.sides.each_ref().map(&mut extent);
-        let is_kept = a.intersection(b).is_empty() || places < PLACES.min(most / FEWEST);
-        places += usize::from(!a.intersection(b).is_empty());
+        let is_kept = pair.region.is_empty() || pair.region.is_finite() && places < PLACES.min(most / FEWEST);
+        places += usize::from(is_kept && !pair.region.is_empty());
         is_kept
     });
     let each = most / places.clamp(1, PLACES);
-    for Pair { sides: [a, b], pieces, part } in pairs {
-        closer.rays.extend(between(&boxes(&a), &boxes(&b)).into_iter().take(each));
+    let looks = |Pair { sides: [a, b], region, .. }: &Pair| {
+        let between = between([own(a), own(b)], region);
+        let summits = if region.is_empty() { Vec::new() } else { summit::lines([own(a), own(b)], region) };
+        // The first of both where there are few.
+        let (mut between, mut summits) = (between.into_iter(), summits.into_iter());
+        let mut turns = (0..each).map(move |i| match i % 2 {
+            0 => between.next().or_else(|| summits.next()),
+            _ => summits.next().or_else(|| between.next()),
+        });
+        std::iter::from_fn(move || turns.next().flatten()).collect::<Vec<Ray>>()
+    };
+    closer.rays.par_extend(pairs.par_iter().flat_map_iter(looks));
+    for Pair { pieces, part, .. } in pairs {
         closer.pieces.extend(pieces);
         closer.parts.extend(part);
     }
@@ -157,39 +169,49 @@ fn eaten<'a>(outline: &'a Outline, seen: &'a Seen) -> impl Iterator<Item = Range
 }
 
 /// Between what lines are sent.
-fn pairs(outline: &Outline, seen: &Seen) -> Vec<Pair> {
+fn pairs(outline: &Outline, logic: &Logic, extents: &[[Aabb; 2]], seen: &Seen) -> Vec<Pair> {
+    let of = |node: Option<u32>| node.map_or(Aabb::EMPTY, |node| extents[node as usize][0]);
     let mut pairs = Vec::new();
-    for cut in &outline.cuts {
-        let idle = |piece: &&Piece| {
+    for (cut, nodes) in outline.cuts.iter().zip(&logic.cuts) {
+        let idle = |piece: &Piece| {
             let base = cut.base.as_ref().is_some_and(|base| !seen.left.contains(&base.at));
             base || !seen.cutting.contains(&piece.at)
         };
         let base = cut.base.as_ref().map(|base| base.leaves.clone()).unwrap_or_default();
-        let pair = |piece: &Piece| Pair {
+        let around = if cut.base.is_some() { of(nodes.base) } else { Aabb::ALL };
+        let cutters = cut.cutters.iter().zip(&nodes.cutters).filter(|(piece, _)| idle(piece));
+        pairs.extend(cutters.map(|(piece, node)| Pair {
             sides: [base.clone(), piece.leaves.clone()],
+            region: around.intersection(of(*node)),
             pieces: cut.base.iter().map(|base| base.at).chain([piece.at]).collect(),
             part: None,
-        };
-        pairs.extend(cut.cutters.iter().filter(idle).map(pair));
+        }));
     }
-    let unmet = outline.meetings.iter().filter(|meeting| !seen.meetings.contains(&meeting.at));
-    pairs.extend(unmet.map(|m| Pair { sides: m.sides.clone(), pieces: vec![m.at], part: None }));
+    let meetings = outline.meetings.iter().zip(&logic.meetings);
+    let unmet = meetings.filter(|(meeting, node)| node.is_some() && !seen.meetings.contains(&meeting.at));
+    pairs.extend(unmet.map(|(m, node)| Pair {
+        sides: m.sides.clone(),
+        region: of(*node),
+        pieces: vec![m.at],
+        part: None,
+    }));
+    let region = |i: u32| of(logic.parts.get(i as usize).copied());
     let empty = outline.parts.iter().zip(0..).filter(|(_, i)| !seen.parts.contains(i));
-    let alone = |(part, i): (&Part, u32)| Pair {
+    pairs.extend(empty.map(|(part, i)| Pair {
         sides: [part.leaves.clone(), part.leaves.clone()],
+        region: region(i),
         pieces: Vec::new(),
         part: Some(i),
-    };
-    pairs.extend(empty.map(alone));
+    }));
     for (a, i) in outline.parts.iter().zip(0..).take(PAIRS) {
-        let apart = |b: &Part| a.bounds.intersection(b.bounds).is_empty();
-        let others = outline.parts.iter().zip(0..).skip(i as usize + 1).take(PAIRS);
-        let others = others.filter(|(b, j)| !apart(b) && !seen.overlaps.contains_key(&(i, *j)));
-        pairs.extend(others.map(|(b, _)| Pair {
-            sides: [a.leaves.clone(), b.leaves.clone()],
-            pieces: Vec::new(),
-            part: None,
-        }));
+        for (b, j) in outline.parts.iter().zip(0..).skip(i as usize + 1).take(PAIRS) {
+            let region = region(i).intersection(region(j));
+            if region.is_empty() || seen.overlaps.contains_key(&(i, j)) {
+                continue;
+            }
+            let sides = [a.leaves.clone(), b.leaves.clone()];
+            pairs.push(Pair { sides, region, pieces: Vec::new(), part: None });
+        }
     }
     pairs
 }
@@ -218,23 +240,22 @@ fn corners(leaf: &Leaf) -> Vec<Ray> {
     rays
 }
 
-fn union(boxes: &[Aabb]) -> Aabb {
-    boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union)
-}
-
-/// Lines between boxes of two sides.
-fn between(a: &[Aabb], b: &[Aabb]) -> Vec<Ray> {
-    let meeting = union(a).intersection(union(b));
-    let length = union(a).union(union(b)).diagonal();
-    if meeting.is_empty() || !length.is_finite() {
+/// Lines between shapes of two sides, and about where they can meet.
+fn between([a, b]: [&[Leaf]; 2], region: &Aabb) -> Vec<Ray> {
+    if region.is_empty() || !region.is_finite() {
         return Vec::new();
     }
+    let boxes = |side: &[Leaf]| -> Vec<Aabb> {
+        side.iter().map(|leaf| leaf.bounds).filter(|b| b.is_finite() && !b.is_empty()).collect()
+    };
+    let (a, b) = (boxes(a), boxes(b));
+    let length = a.iter().chain(&b).fold(*region, |sum, b| sum.union(*b)).diagonal();
     let each = a.iter().flat_map(|a| b.iter().map(move |b| (a.center(), b.center())));
     let joins = each.filter(|(a, b)| a != b).take(PAIRS);
     let mut joins = joins.map(|(a, b)| Ray::new(a, length * (b - a).normalize_or_zero()));
     let mut rays: Vec<Ray> = joins.next().into_iter().collect();
-    rays.extend(ABOUT.map(|dir| Ray::new(meeting.center(), length * DVec3::from_array(dir).normalize())));
+    rays.extend(ABOUT.map(|dir| Ray::new(region.center(), length * DVec3::from_array(dir).normalize())));
     rays.extend(joins);
-    rays.extend((0..MEETING).map(|number| through(&meeting, length, number)));
+    rays.extend((0..MEETING).map(|number| through(region, length, number)));
     rays
 }

@@ -4,9 +4,10 @@
 
 use std::collections::BTreeMap;
 
+use super::seen::Thin;
 use super::{Evidence, Finding};
 use crate::diag::Diagnostic;
-use crate::geom::tolerance;
+use crate::geom::{Aabb, tolerance};
 use crate::source::Span;
 
 /// The line of the table.
@@ -14,14 +15,11 @@ pub(super) const FINDING: Finding =
     Finding { code: "W0125", doc: "What is left, or open, between shapes is too thin to be meant.", find };
 
 fn find(evidence: &Evidence) -> Vec<Diagnostic> {
-    let calls = &evidence.outline.calls;
-    let mut films = Thin::new();
-    for (&(a, b), film) in &evidence.seen.films {
-        let (at, of) = (calls[a as usize], calls[b as usize]);
-        films.entry([at.min(of), at.max(of)]).or_insert((a, b, *film)).2 |= film;
-    }
+    let films = over_areas(evidence, &evidence.seen.films, |place, _| tolerance::cleanup(place.farthest()));
     let name = |leaf: u32| &*evidence.leaves[leaf as usize].name;
-    let kept = skins(evidence).into_iter().filter(|(at, _)| !films.contains_key(at));
+    let kept = over_areas(evidence, &evidence.seen.skins, |_, size| tolerance::skin(size))
+        .into_iter()
+        .filter(|(at, _)| !films.contains_key(at));
     let kept: Vec<Diagnostic> =
         kept.map(|(at, (a, b, film))| between(at, [a, b].map(name), film, &KEPT)).collect();
     let warn = |(at, (a, b, film)): ([Span; 2], (u32, u32, bool))| match a == b {
@@ -37,23 +35,32 @@ fn find(evidence: &Evidence) -> Vec<Diagnostic> {
 }
 
 /// By the places of two calls the leaves that were seen, and whether it is a film.
-type Thin = BTreeMap<[Span; 2], (u32, u32, bool)>;
+type Pairs = BTreeMap<[Span; 2], (u32, u32, bool)>;
 
-/// What is drawn and is thinner than anybody builds, over an area.
-fn skins(evidence: &Evidence) -> Thin {
+/// What is thin over an area: at a tip, an edge, or where round faces touch, everything is, up to some way from there.
+fn over_areas(
+    evidence: &Evidence,
+    seen: &BTreeMap<(u32, u32), Thin>,
+    thickness: fn(&Aabb, f64) -> f64,
+) -> Pairs {
     let calls = &evidence.outline.calls;
-    let mut skins = Thin::new();
-    for (&(a, b), (place, film)) in &evidence.seen.skins {
+    let mut pairs = Pairs::new();
+    for (&(a, b), Thin { place, film }) in seen {
         let sizes = [a, b].map(|leaf| evidence.leaves[leaf as usize].bounds.diagonal());
-        let size = sizes.into_iter().filter(|size| size.is_finite()).fold(place.farthest(), f64::max);
-        if place.diagonal() <= tolerance::touch(tolerance::skin(size), size) {
+        let finite = sizes.into_iter().filter(|size| size.is_finite());
+        let size = finite.reduce(f64::min).unwrap_or_else(|| place.farthest());
+        let touch = tolerance::touch(thickness(place, size), size).min(SMALL * size);
+        if place.diagonal() < touch {
             continue;
         }
         let (at, of) = (calls[a as usize], calls[b as usize]);
-        skins.entry([at.min(of), at.max(of)]).or_insert((a, b, *film)).2 |= film;
+        pairs.entry([at.min(of), at.max(of)]).or_insert((a, b, *film)).2 |= film;
     }
-    skins
+    pairs
 }
+
+/// What is thin over so much of a shape is thin over an area, however large the clean-up is.
+const SMALL: f64 = 0.01;
 
 /// What is said of thin things: how thin they are, and what becomes of a film and of a gap.
 struct Words {

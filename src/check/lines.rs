@@ -6,21 +6,30 @@
 
 use glam::DVec3;
 
+use super::logic::Logic;
 use crate::csg::{Leaf, Object};
 use crate::geom::{Aabb, Interval, Ray};
 use crate::num::hash::Stream;
-use crate::prepare::{Outline, Piece};
+use crate::prepare::Outline;
 use crate::solid::{Crossing, Scratch};
 
-/// Lines through the whole, each leaf, each solid drawn, each meeting of cutter and base.
+/// Lines through the whole, each leaf, each solid drawn, each meeting of cutter and base or of operands.
 const THROUGH: [u64; 4] = [2000, 24, 64, 48];
 /// Lines times nodes of the expression that are looked at; beyond, only every so many-th line is cast.
 pub(super) const WORK: u64 = 30_000_000;
 
-/// All test lines of an object; `nodes` is the size of its expression.
-pub(super) fn lines(object: &Object, outline: &Outline, nodes: usize) -> Vec<Ray> {
-    let leaves = object.leaves();
-    let finite = leaves.iter().map(|l| l.bounds).filter(|b| b.is_finite() && !b.is_empty());
+/// All test lines of an object; `extents` are boxes around the nodes of its expression ([`super::extents`]).
+pub(super) fn lines(object: &Object, outline: &Outline, logic: &Logic, extents: &[[Aabb; 2]]) -> Vec<Ray> {
+    let (leaves, nodes) = (object.leaves(), logic.len());
+    let of = |node: &Option<u32>| node.map_or(Aabb::EMPTY, |node| extents[node as usize][0]);
+    let parts: Vec<Aabb> = logic
+        .parts
+        .iter()
+        .zip(&outline.parts)
+        .map(|(node, part)| of(&Some(*node)).intersection(part.bounds))
+        .collect();
+    let finite = leaves.iter().map(|l| l.bounds).chain(parts.iter().copied());
+    let finite = finite.filter(|b| b.is_finite() && !b.is_empty());
     let mut whole = finite.fold(Aabb::EMPTY, Aabb::union);
     if whole.is_empty() {
         // Unbounded solids alone: a box around the origin that reaches them.
@@ -33,15 +42,12 @@ pub(super) fn lines(object: &Object, outline: &Outline, nodes: usize) -> Vec<Ray
     }
     let mut targets: Vec<(Aabb, u64)> = vec![(whole, THROUGH[0])];
     targets.extend(leaves.iter().map(|l| (l.bounds, THROUGH[1])));
-    targets.extend(outline.parts.iter().map(|p| (p.bounds, THROUGH[2])));
-    let extent = |piece: &Piece| {
-        let own = &leaves[piece.leaves.start as usize..piece.leaves.end as usize];
-        own.iter().fold(Aabb::EMPTY, |sum, l| sum.union(l.bounds))
-    };
-    for cut in &outline.cuts {
-        let base = cut.base.as_ref().map_or(Aabb::ALL, extent);
-        targets.extend(cut.cutters.iter().map(|c| (base.intersection(extent(c)), THROUGH[3])));
+    targets.extend(parts.iter().map(|bounds| (*bounds, THROUGH[2])));
+    for cut in &logic.cuts {
+        let base = cut.base.map_or(Aabb::ALL, |node| of(&Some(node)));
+        targets.extend(cut.cutters.iter().map(|cutter| (base.intersection(of(cutter)), THROUGH[3])));
     }
+    targets.extend(logic.meetings.iter().map(|meeting| (of(meeting), THROUGH[3])));
     let all: u64 = targets.iter().map(|t| t.1).sum();
     let every = (all * nodes.max(1) as u64).div_ceil(WORK).max(1);
     let mut lines = Vec::new();

@@ -10,7 +10,7 @@ use crate::prepare::{Meeting, Outline, Piece};
 
 /// How a node combines those below it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Kind {
+pub(super) enum Kind {
     Leaf(u32),
     Not,
     Or,
@@ -19,10 +19,10 @@ enum Kind {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Node {
-    kind: Kind,
+pub(super) struct Node {
+    pub kind: Kind,
     /// The node above; its own index at the top of a solid drawn.
-    above: u32,
+    pub above: u32,
     below: u32,
     /// First leaf, and one past the last.
     leaves: (u32, u32),
@@ -41,7 +41,7 @@ pub(super) struct CutNodes {
 #[derive(Debug)]
 pub(super) struct Logic {
     /// Each after the one above it.
-    nodes: Vec<Node>,
+    pub nodes: Vec<Node>,
     /// The top node of each solid drawn.
     pub parts: Vec<u32>,
     /// As in the outline.

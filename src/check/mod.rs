@@ -10,13 +10,17 @@ mod coincident;
 mod dead_cutter;
 mod empty;
 mod evidence;
+mod extents;
 mod film;
 mod flush;
 mod lines;
 mod logic;
 mod overlap;
+mod seen;
+mod summit;
 mod swallowed;
 mod unseen;
+mod witness;
 
 use crate::diag::Diagnostic;
 use crate::prepare::Outline;

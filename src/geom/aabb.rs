@@ -108,6 +108,24 @@ impl Aabb {
         }
     }
 
+    /// The same where a side without an end may keep the others' ends: along each axis of the image the sum of what the
+    /// sides reach, those that do not turn into it left out.
+    pub fn transformed_sides(&self, to_from: &DAffine3) -> Aabb {
+        if self.is_empty() || self.is_finite() {
+            return self.transformed(to_from);
+        }
+        let rows = to_from.matrix3.transpose();
+        let mut image = Aabb { min: to_from.translation, max: to_from.translation };
+        for (axis, row) in [rows.x_axis, rows.y_axis, rows.z_axis].into_iter().enumerate() {
+            for from in (0..3).filter(|from| row[*from] != 0.0) {
+                let (a, b) = (row[from] * self.min[from], row[from] * self.max[from]);
+                image.min[axis] += a.min(b);
+                image.max[axis] += a.max(b);
+            }
+        }
+        image
+    }
+
     /// Squared distance of a point from the box; zero inside.
     pub fn distance_squared(&self, p: DVec3) -> f64 {
         (p - p.clamp(self.min, self.max)).length_squared()

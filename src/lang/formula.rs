@@ -152,6 +152,10 @@ impl Reader<'_, '_> {
     fn indexed(&mut self, term: Term, steps: &[Follows], at: Span) -> Eval<Term> {
         match (term, steps) {
             (term, []) => Ok(term),
+            (Term::Vector(_), [Follows::Index(index, _)]) if order::uses(index, &["x", "y", "z"]) => {
+                let error = Diagnostic::error("E0511", "an index of a formula is the same everywhere");
+                Err(error.at(index.at, "depends on x, y or z").help("write a number").into())
+            }
             (Term::Vector(v), [Follows::Index(index, index_at)]) => {
                 let given = self.machine.located(index)?;
                 let i = given.number("the index")?;

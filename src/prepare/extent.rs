@@ -11,8 +11,9 @@ use crate::geom::Aabb;
 use crate::scene::{BooleanOp, Operand, Shape, ShapeKind};
 
 impl Lowering<'_, '_> {
-    /// A box around the image of a shape: tight for leaves and unions but those of a million solids in many places; for the other operators that of what they are
-    /// cut from. Unbounded where the shape is.
+    /// A box around the image of a shape: tight for leaves and unions but those of a million solids in many places; for the
+    /// other operators that of what they are cut from, less what half-spaces along the axes take away. Sides are unbounded where
+    /// the shape is.
     pub(super) fn extent(&mut self, shape: &Shape, to_from: &DAffine3) -> Result<Aabb, Diagnostic> {
         if !self.groups.is_vast(shape) {
             return deep::step(|| self.extent_here(shape, to_from));
@@ -20,7 +21,7 @@ impl Lowering<'_, '_> {
         let known = self.groups.extents.get(&address(shape)).copied();
         let own = known.map_or_else(|| deep::step(|| self.extent_here(shape, &DAffine3::IDENTITY)), Ok)?;
         self.groups.extents.insert(address(shape), own);
-        Ok(if own.is_finite() { own.transformed(to_from) } else { own })
+        Ok(own.transformed_sides(to_from))
     }
 
     fn extent_here(&mut self, shape: &Shape, to_from: &DAffine3) -> Result<Aabb, Diagnostic> {
@@ -30,7 +31,7 @@ impl Lowering<'_, '_> {
                 match bounded_by(call) {
                     Some((_, bounding)) => self.extent(bounding, to_from),
                     None if solid.bounds().is_finite() => Ok(solid.extent_under(to_from)),
-                    None => Ok(Aabb::ALL),
+                    None => Ok(solid.limits()[0].transformed_sides(to_from)),
                 }
             }
             ShapeKind::Transform { world_from_local, child } => {
@@ -58,17 +59,49 @@ impl Lowering<'_, '_> {
         operands: &[Operand],
         to_from: &DAffine3,
     ) -> Result<Aabb, Diagnostic> {
-        let used = match op {
-            BooleanOp::Complement => return Ok(Aabb::ALL),
-            BooleanOp::Difference => &operands[..1.min(operands.len())],
-            _ => operands,
-        };
         let mut all = if op == BooleanOp::Intersection { Aabb::ALL } else { Aabb::EMPTY };
-        for operand in used {
-            let next = self.extent(&operand.shape, to_from)?;
-            all = if op == BooleanOp::Intersection { all.intersection(next) } else { all.union(next) };
+        for (i, operand) in operands.iter().enumerate() {
+            let shape = &operand.shape;
+            all = match op {
+                BooleanOp::Intersection => all.intersection(self.extent(shape, to_from)?),
+                BooleanOp::Difference if 0 < i && all.is_finite() => break,
+                BooleanOp::Difference if 0 < i => all.intersection(self.extent_outside(shape, to_from)?),
+                BooleanOp::Complement => self.extent_outside(shape, to_from)?,
+                _ => all.union(self.extent(shape, to_from)?),
+            };
         }
         Ok(all)
+    }
+
+    /// A box around all that is outside of the image of a shape.
+    fn extent_outside(&mut self, shape: &Shape, to_from: &DAffine3) -> Result<Aabb, Diagnostic> {
+        if self.groups.is_vast(shape) {
+            return Ok(Aabb::ALL);
+        }
+        deep::step(|| match &shape.0.kind {
+            ShapeKind::Leaf { call, .. } if bounded_by(call).is_none() => {
+                Ok(self.any_solid(shape)?.limits()[1].transformed_sides(to_from))
+            }
+            ShapeKind::Transform { world_from_local, child } => {
+                self.extent_outside(child, &(*to_from * *world_from_local))
+            }
+            ShapeKind::With { child, .. } | ShapeKind::Cut { child, .. } => {
+                self.extent_outside(child, to_from)
+            }
+            ShapeKind::Boolean { op: BooleanOp::Complement, operands } => {
+                operands.iter().try_fold(Aabb::EMPTY, |all, o| Ok(all.union(self.extent(&o.shape, to_from)?)))
+            }
+            ShapeKind::Boolean { op: BooleanOp::Union, operands } => {
+                let outside =
+                    |all: Aabb, o: &Operand| Ok(all.intersection(self.extent_outside(&o.shape, to_from)?));
+                operands.iter().try_fold(Aabb::ALL, outside)
+            }
+            ShapeKind::Boolean { op: BooleanOp::Intersection, operands } => {
+                let outside = |all: Aabb, o: &Operand| Ok(all.union(self.extent_outside(&o.shape, to_from)?));
+                operands.iter().try_fold(Aabb::EMPTY, outside)
+            }
+            _ => Ok(Aabb::ALL),
+        })
     }
 }
 

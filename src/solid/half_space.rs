@@ -60,6 +60,20 @@ impl Solid for HalfSpace {
         Aabb::ALL
     }
 
+    fn limits(&self) -> [Aabb; 2] {
+        let mut limits = [Aabb::ALL; 2];
+        if let Some(axis) = (0..3).find(|axis| self.normal[*axis].abs() == 1.0) {
+            let [below, above] = &mut limits;
+            below.max[axis] = self.offset;
+            above.min[axis] = self.offset;
+            if self.normal[axis] < 0.0 {
+                (below.max[axis], above.min[axis]) = (f64::INFINITY, f64::NEG_INFINITY);
+                (below.min[axis], above.max[axis]) = (-self.offset, -self.offset);
+            }
+        }
+        limits
+    }
+
     fn chord(&self, ray: &Ray, lean: &Lean) -> Option<Chord> {
         let (height, slope) = (self.offset - self.normal.dot(ray.origin), self.normal.dot(ray.dir));
         let all = [f64::NEG_INFINITY, f64::INFINITY];

@@ -78,6 +78,12 @@ pub trait Solid: Send + Sync + Debug {
         self.bounds().transformed(to_from)
     }
 
+    /// A box around the solid and one around all that is outside of it, each side unbounded where there is none: for views
+    /// and warnings, no crossing depends on it.
+    fn limits(&self) -> [Aabb; 2] {
+        [self.bounds(), Aabb::ALL]
+    }
+
     /// Appends the crossings of the ray's line to `out`, ascending in `t`, and says for which range they are
     /// complete and whether the ray is inside where that range begins. The range of the answer contains the
     /// low end of the range asked and may end early (a lazy solid stops after what it has found) or reach

@@ -126,7 +126,11 @@ impl Solid for Implicit {
         }
         let reach = (2.0 * crossing.err + tolerance::STRETCH * crossing.t.abs()) * ray.dir;
         let (p, room) = (ray.at(crossing.t), &mut scratch.implicit);
-        let (_, gradient) = tape::gradient(&self.formula.steps, p, reach, room);
+        // At a pole itself nothing is known; just beside it the gradient is that of what goes to zero there.
+        let places = [p, p - reach, p + reach].into_iter();
+        let gradients = places.map(|p| tape::gradient(&self.formula.steps, p, reach, room).1);
+        let of_some_size = |g: &DVec3| g.is_finite() && *g != DVec3::ZERO;
+        let gradient = gradients.filter(of_some_size).next().unwrap_or(DVec3::ZERO);
         let largest = gradient.abs().max_element();
         let against = if crossing.entering { -ray.dir } else { ray.dir };
         let normal = (gradient / largest).try_normalize().unwrap_or_else(|| unit(against));

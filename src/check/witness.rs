@@ -1,0 +1,266 @@
+//! What one test line after another sees: faces that stand near each other, and what holds on the stretches between.
+
+use glam::DVec3;
+
+use super::lines::{self, Event};
+use super::logic::{Logic, State};
+use super::seen::{Seen, Thin};
+use crate::csg::Object;
+use crate::geom::{Aabb, Ray, tolerance};
+use crate::prepare::{Cutting, Outline};
+use crate::solid::Scratch;
+use crate::source::Span;
+
+/// Each of many faces at one place is held against so many after it: of a hundred copies each is near some.
+const TOGETHER: usize = 12;
+/// Of more cutters at one place it is not kept which.
+const ALIKE: usize = 6;
+
+/// Looks along lines.
+pub(super) struct Witness<'a> {
+    object: &'a Object,
+    outline: &'a Outline,
+    logic: &'a Logic,
+    /// How far from the origin the rays of the picture begin: what is thin to the clean-up is thin to theirs.
+    eye: f64,
+    seen: Seen,
+    inside: Vec<bool>,
+    events: Vec<Event>,
+    state: State,
+    scratch: Scratch,
+    cuts: Vec<CutSeen>,
+    meetings: Vec<bool>,
+    /// Nodes evaluated.
+    pub steps: u64,
+}
+
+/// What was seen of a cut.
+#[derive(Clone, Debug, Default)]
+struct CutSeen {
+    /// Whether a line was inside the base, and whether something was left of it there.
+    base: bool,
+    left: bool,
+    /// For each cutter whether it took something away, and whether it did not hold somewhere in the base.
+    cutters: Vec<[bool; 2]>,
+}
+
+impl<'a> Witness<'a> {
+    /// Nothing seen yet; `eye` is how far from the origin the rays of the picture begin.
+    pub fn new(object: &'a Object, outline: &'a Outline, logic: &'a Logic, eye: f64) -> Witness<'a> {
+        Witness {
+            object,
+            outline,
+            logic,
+            eye,
+            seen: Seen::default(),
+            inside: vec![false; object.leaves().len()],
+            events: Vec::new(),
+            state: State::default(),
+            scratch: Scratch::default(),
+            cuts: outline.cuts.iter().map(CutSeen::new).collect(),
+            meetings: vec![false; outline.meetings.len()],
+            steps: 0,
+        }
+    }
+
+    /// All that was seen, operands of cuts by their places.
+    pub fn finish(self) -> Seen {
+        let mut seen = self.seen;
+        let met = self.outline.meetings.iter().zip(&self.meetings).filter(|(_, held)| **held);
+        seen.meetings.extend(met.map(|(meeting, _)| meeting.at));
+        for (cut, found) in self.outline.cuts.iter().zip(&self.cuts) {
+            let base = cut.base.as_ref().map(|base| base.at);
+            seen.bases.extend(base.filter(|_| found.base));
+            seen.left.extend(base.filter(|_| found.left));
+            for (cutter, [cutting, uncovering]) in cut.cutters.iter().zip(&found.cutters) {
+                seen.cutting.extend(cutting.then_some(cutter.at));
+                seen.uncovering.extend(uncovering.then_some(cutter.at));
+            }
+        }
+        seen
+    }
+
+    pub fn look(&mut self, ray: &Ray) {
+        lines::ask(self.object, ray, &mut self.inside, &mut self.events, &mut self.scratch);
+        let events = std::mem::take(&mut self.events);
+        self.steps += (events.len() as u64 + 1) * self.logic.len() as u64;
+        self.faces(&events, ray);
+        self.stretches(&events, ray);
+        self.events = events;
+    }
+
+    /// Pairs of faces too near to be told apart.
+    fn faces(&mut self, events: &[Event], ray: &Ray) {
+        for (i, a) in events.iter().enumerate() {
+            for b in events[i + 1..].iter().take(TOGETHER) {
+                if !self.is_thin(a, b, ray) {
+                    break;
+                }
+                if a.leaf != b.leaf && !self.is_one_cutter([a.leaf, b.leaf]) {
+                    let pair = (a.leaf.min(b.leaf), a.leaf.max(b.leaf));
+                    let place = self.seen.shared.entry(pair).or_default();
+                    *place = place.including(ray.at(a.t));
+                }
+            }
+        }
+    }
+
+    /// Whether two leaves are one cutter, taken from two solids drawn.
+    fn is_one_cutter(&self, pair: [u32; 2]) -> bool {
+        let [a, b] = pair.map(|i| &self.object.leaves()[i as usize]);
+        let calls = pair.map(|i| self.outline.calls[i as usize]);
+        let places = [a, b].map(|leaf| leaf.place.world_from_local);
+        let part = |i: u32| self.outline.parts.iter().position(|part| part.leaves.contains(&i));
+        let is_same = a.cutter && b.cutter && calls[0] == calls[1] && places[0] == places[1];
+        is_same && part(pair[0]) != part(pair[1])
+    }
+
+    /// Whether what lies between two crossings is nothing to the clean-up of set algebra.
+    fn is_thin(&self, a: &Event, b: &Event, ray: &Ray) -> bool {
+        self.is_within(a, b, ray, (self.eye, tolerance::cleanup))
+    }
+
+    /// Whether two crossings stand no further apart, along a normal, than a tolerance of the scale in play, at least so large.
+    fn is_within(&self, a: &Event, b: &Event, ray: &Ray, (least, tolerance): (f64, fn(f64) -> f64)) -> bool {
+        let leaves = [a, b].map(|e| &self.object.leaves()[e.leaf as usize]);
+        let scale = ray.origin.length().max(ray.at(a.t).length().min(ray.at(b.t).length()));
+        let scale = scale.max(leaves[0].scale()).max(leaves[1].scale()).max(least);
+        let error = a.crossing.shift * leaves[0].place.stretch + b.crossing.shift * leaves[1].place.stretch;
+        let thickness = (b.t - a.t) * ray.dir.length() * a.slope.max(b.slope);
+        thickness <= tolerance(scale) + error
+    }
+
+    /// The leaves of a thin stretch that is a film: of one leaf, or thicker than faces that are meant to coincide leave it.
+    fn film_of(&self, a: &Event, b: &Event, ray: &Ray) -> Option<(u32, u32)> {
+        let built = a.leaf == b.leaf || !self.is_within(a, b, ray, (0.0, tolerance::film));
+        built.then_some((a.leaf.min(b.leaf), a.leaf.max(b.leaf)))
+    }
+
+    /// The size that the thickness of what two leaves leave is held against: of the larger, or how far they reach.
+    fn size(&self, pair: [u32; 2]) -> f64 {
+        let leaves = pair.map(|i| &self.object.leaves()[i as usize]);
+        let sizes = leaves.map(|leaf| leaf.bounds.diagonal()).into_iter().filter(|size| size.is_finite());
+        sizes.reduce(f64::max).unwrap_or_else(|| leaves[0].scale().max(leaves[1].scale()))
+    }
+
+    /// The leaves of a stretch that is not thin to the clean-up, but thinner than anybody builds of two: one shape as thin
+    /// was written so.
+    fn skin_of(&self, a: &Event, b: &Event, ray: &Ray) -> Option<(u32, u32)> {
+        let thickness = (b.t - a.t) * ray.dir.length() * a.slope.max(b.slope);
+        let is_skin = a.leaf != b.leaf && thickness <= tolerance::skin(self.size([a.leaf, b.leaf]));
+        is_skin.then_some((a.leaf.min(b.leaf), a.leaf.max(b.leaf)))
+    }
+
+    /// The stretches between crossings, the unbounded ones included.
+    fn stretches(&mut self, events: &[Event], ray: &Ray) {
+        let (mut films, mut skins) = (Films::default(), Films::default());
+        for i in 0..=events.len() {
+            let (before, after) = (i.checked_sub(1).map(|i| &events[i]), events.get(i));
+            if let Some(event) = before {
+                self.inside[event.leaf as usize] = event.crossing.entering;
+            }
+            if before.zip(after).is_some_and(|(a, b)| a.t == b.t) {
+                continue;
+            }
+            self.logic.evaluate(&self.inside, &mut self.state);
+            let any = self.logic.parts.iter().any(|p| self.state.holds[*p as usize]);
+            let thin = before.zip(after).filter(|(a, b)| self.is_thin(a, b, ray));
+            let film = thin.and_then(|(a, b)| self.film_of(a, b, ray));
+            let skin = before.zip(after).filter(|_| thin.is_none());
+            let skin = skin.and_then(|(a, b)| self.skin_of(a, b, ray));
+            let place = before.map_or(Aabb::EMPTY, |at| Aabb::EMPTY.including(ray.at(at.t)));
+            for (follower, found, seen) in
+                [(&mut films, film, &mut self.seen.films), (&mut skins, skin, &mut self.seen.skins)]
+            {
+                if let Some(pair) = follower.next(any, found) {
+                    seen.entry(pair).or_default().add(Thin { place, film: !any });
+                }
+            }
+            if thin.is_none() {
+                let end = |e: Option<&Event>, none: f64| e.map_or(DVec3::splat(none), |e| ray.at(e.t));
+                self.stretch([end(before, f64::NEG_INFINITY), end(after, f64::INFINITY)]);
+            }
+        }
+    }
+
+    /// A stretch with some thickness, between two points.
+    fn stretch(&mut self, ends: [DVec3; 2]) {
+        let (seen, holds) = (&mut self.seen, &self.state.holds);
+        let inside = self.inside.iter().enumerate().filter(|(_, inside)| **inside);
+        seen.crossed.extend(inside.map(|(leaf, _)| leaf as u32));
+        let parts = self.logic.parts.iter().zip(0..).filter(|(node, _)| holds[**node as usize]);
+        let parts: Vec<u32> = parts.map(|(_, part)| part).collect();
+        for (k, a) in parts.iter().enumerate() {
+            for b in &parts[k + 1..] {
+                let known = seen.overlaps.entry((*a, *b)).or_default();
+                *known = ends.into_iter().fold(*known, Aabb::including);
+            }
+        }
+        seen.parts.extend(parts);
+        for (found, node) in self.meetings.iter_mut().zip(&self.logic.meetings) {
+            *found |= node.is_some_and(|n| holds[n as usize]);
+        }
+        for (found, nodes) in self.cuts.iter_mut().zip(&self.logic.cuts) {
+            let held = |node: &Option<u32>| node.is_some_and(|n| holds[n as usize]);
+            let in_base = held(&nodes.base);
+            found.base |= in_base;
+            found.left |= in_base && !nodes.cutters.iter().any(held);
+            for ([cutting, uncovering], node) in found.cutters.iter_mut().zip(&nodes.cutters) {
+                *cutting |= node.is_some_and(|n| holds[n as usize] && self.state.tells[n as usize]);
+                *uncovering |= in_base && !held(node);
+            }
+        }
+        self.seen.alike.extend(self.alike());
+    }
+}
+
+impl Witness<'_> {
+    /// The cutters that hold here, where each of them could be left out, and one of them cuts its base.
+    fn alike(&self) -> Option<Vec<Span>> {
+        let State { holds, tells, .. } = &self.state;
+        let (mut all, mut cuts) = (Vec::new(), false);
+        for (nodes, cut) in self.logic.cuts.iter().zip(&self.outline.cuts) {
+            let in_base = nodes.base.is_none_or(|n| holds[n as usize]);
+            for (node, piece) in nodes.cutters.iter().zip(&cut.cutters) {
+                let Some(n) = node.filter(|n| holds[*n as usize]) else { continue };
+                if tells[n as usize] || all.len() == ALIKE {
+                    return None;
+                }
+                all.push(piece.at);
+                cuts |= in_base;
+            }
+        }
+        all.sort_unstable();
+        (cuts && 1 < all.len()).then_some(all)
+    }
+}
+
+impl CutSeen {
+    fn new(cut: &Cutting) -> CutSeen {
+        CutSeen { cutters: vec![[false; 2]; cut.cutters.len()], ..CutSeen::default() }
+    }
+}
+
+/// Follows the truth along a line for films and slits: stretches that differ from both neighbours, which are alike.
+#[derive(Default)]
+struct Films {
+    /// The truth before the film, and the leaves whose faces bound it.
+    open: Option<(bool, (u32, u32))>,
+    before: Option<bool>,
+}
+
+impl Films {
+    /// The next stretch: its truth, and the leaves whose faces bound it if it is thin. Returns the leaves of a film that
+    /// ended here.
+    fn next(&mut self, holds: bool, thin_of: Option<(u32, u32)>) -> Option<(u32, u32)> {
+        let open = self.open.take();
+        let found = open.filter(|(before, _)| *before == holds).map(|(_, leaves)| leaves);
+        if let (Some(before), Some(leaves)) = (self.before, thin_of)
+            && before != holds
+        {
+            self.open = Some((before, leaves));
+        }
+        self.before = Some(holds);
+        found
+    }
+}
