@@ -9,6 +9,8 @@ use crate::clock::{command_seconds, median, runs_a_round};
 use crate::table::Row;
 
 const ROUNDS: usize = 7;
+/// A quotient of two short times needs more.
+const ROUNDS_OF_SHORT: usize = 31;
 
 /// Where files are written.
 pub fn folder() -> PathBuf {
@@ -31,10 +33,10 @@ pub fn pss(scene: &Path, more: &str) -> String {
 }
 
 /// Medians of commands run in turns, so that what disturbs one disturbs all; `None` for one that fails.
-fn seconds<const N: usize>(commands: [&str; N]) -> [Option<f64>; N] {
+fn seconds<const N: usize>(rounds: usize, commands: [&str; N]) -> [Option<f64>; N] {
     let runs = commands.map(runs_a_round);
     let round = || std::array::from_fn(|i| command_seconds(commands[i], runs[i]?));
-    let rounds: Vec<[Option<f64>; N]> = (0..ROUNDS).map(|_| round()).collect();
+    let rounds: Vec<[Option<f64>; N]> = (0..rounds).map(|_| round()).collect();
     std::array::from_fn(|i| {
         rounds[0][i]?;
         Some(median(rounds.iter().filter_map(|round| round[i])))
@@ -63,7 +65,7 @@ fn plate(side: u32) -> PathBuf {
 /// A plate with 256 and with 1,024 holes at 300 x 300.
 pub fn plates(rows: &mut Vec<Row>) {
     let [few, many] = [16, 32].map(|side| pss(&plate(side), "--size 300x300"));
-    let [few, many] = seconds([&few, &many]).map(|s| s.unwrap_or(f64::NAN));
+    let [few, many] = seconds(ROUNDS_OF_SHORT, [&few, &many]).map(|s| s.unwrap_or(f64::NAN));
     rows.push(Row::new("plate with 1,024 holes, 300 x 300", many, "CPU s", "<= 0.15"));
     rows.push(Row::new("the same with 256 holes", few, "CPU s", ""));
     rows.push(Row::new("growth from 256 to 1,024", many / few, "times", "< 1.6"));
@@ -152,7 +154,8 @@ pub fn peers(rows: &mut Vec<Row>) {
             continue;
         };
         let other = format!("povray +I{}/pov/{name}.pov +W800 +H600 -D -A +WT1 -F -GA", kit.display());
-        let [ours, theirs] = seconds([&pss(&out, "--size 800x600"), &other]).map(|s| s.unwrap_or(f64::NAN));
+        let [ours, theirs] =
+            seconds(ROUNDS, [&pss(&out, "--size 800x600"), &other]).map(|s| s.unwrap_or(f64::NAN));
         rows.push(Row::new(format!("{name}, 800 x 600"), ours, "CPU s", ""));
         rows.push(Row::new(format!("{name}, POV-Ray 3.7 over this"), theirs / ours, "times", asked));
     }
