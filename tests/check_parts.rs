@@ -3,6 +3,9 @@
 #[macro_use]
 mod check_support;
 
+use pss::prepare::{self, Options};
+use pss::source::SourceMap;
+
 finds! {
     an_intersection_or_difference_in_a_union_that_is_nothing_is_told: "draw sphere(r: 1) | (sphere(r: 1, at: [3,0,0]) & sphere(r: 1, at: [6,0,0]))\n",
     r#"
@@ -165,4 +168,23 @@ fn many_faces_at_one_place_are_told_as_few_are() {
         format!("let s1 = sphere(r: 1)\n{}draw s{n}\n", more.collect::<String>())
     };
     assert_eq!(check_support::findings(&shells(150)), "");
+}
+
+/// A shape without thickness is told where it was written, once, whatever its arguments are.
+#[test]
+fn shapes_without_a_thickness_are_told() {
+    for call in [
+        "box([0, 0, 0], [1, 1, 0])",
+        "cone(r1: 0, r2: 0, h: 1)",
+        "cylinder(r: 1, from: [0, 0, 1], to: [0, 0, 1])",
+        "cone(r1: 1, r2: 0, from: [0, 0, 1], to: [0, 0, 1])",
+    ] {
+        let mut sources = SourceMap::default();
+        let file = sources.add("scene.pss", None, format!("draw {call} | sphere(r: 1)").as_str());
+        let (scene, warnings) = pss::lang::read(&mut sources, file, &prepare::catalog(), &[]).unwrap();
+        let prepared = prepare::prepare(&scene, &Options::default()).unwrap();
+        let told = warnings.iter().chain(&prepared.warnings);
+        let codes: Vec<&str> = told.map(|w| w.code).collect();
+        assert_eq!(codes, ["W0101"], "{call}");
+    }
 }

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::equal::Likeness;
 use super::fitness::{self, Concern, Fitness};
+use super::flat::flat;
 use super::{ScanReport, complaint, files};
 use crate::cloud::holes::{Hole, holes_by};
 use crate::cloud::neighbours::Neighbours;
@@ -129,8 +130,11 @@ impl<'a> Builder<'a> {
             return Ok(Built::Exact(known.clone()));
         }
         let built = exact(call, build)?;
-        if let (Some(likeness), Built::Exact(solid)) = (likeness, &built) {
-            self.equal.insert(likeness, solid.clone());
+        if let Built::Exact(solid) = &built {
+            self.warnings.extend(flat(call, solid.bounds()));
+            if let Some(likeness) = likeness {
+                self.equal.insert(likeness, solid.clone());
+            }
         }
         Ok(built)
     }

@@ -12,6 +12,7 @@ mod equal;
 mod extent;
 mod files;
 mod fitness;
+mod flat;
 mod groups;
 mod instances;
 mod limits;

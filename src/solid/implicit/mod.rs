@@ -128,9 +128,9 @@ impl Solid for Implicit {
         let (p, room) = (ray.at(crossing.t), &mut scratch.implicit);
         // At a pole itself nothing is known; just beside it the gradient is that of what goes to zero there.
         let places = [p, p - reach, p + reach].into_iter();
-        let gradients = places.map(|p| tape::gradient(&self.formula.steps, p, reach, room).1);
+        let mut gradients = places.map(|p| tape::gradient(&self.formula.steps, p, reach, room).1);
         let of_some_size = |g: &DVec3| g.is_finite() && *g != DVec3::ZERO;
-        let gradient = gradients.filter(of_some_size).next().unwrap_or(DVec3::ZERO);
+        let gradient = gradients.find(of_some_size).unwrap_or(DVec3::ZERO);
         let largest = gradient.abs().max_element();
         let against = if crossing.entering { -ray.dir } else { ray.dir };
         let normal = (gradient / largest).try_normalize().unwrap_or_else(|| unit(against));
