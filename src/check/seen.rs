@@ -9,7 +9,7 @@ use crate::source::Span;
 /// may come to many solids.
 #[derive(Debug, Default)]
 pub(super) struct Seen {
-    /// Leaves that are nothing ([`closer::nothing`]).
+    /// Leaves that are nothing ([`super::closer::nothing`]).
     pub nothing: BTreeSet<u32>,
     /// Leaves that a line crossed, with some thickness.
     pub crossed: BTreeSet<u32>,
@@ -20,11 +20,11 @@ pub(super) struct Seen {
     /// Leaves whose faces stand nearer somewhere than the clean-up tells apart, but further than faces that are meant to
     /// coincide; a leaf with itself where it is as thin as that by itself.
     pub films: BTreeMap<(u32, u32), Thin>,
-    /// Leaves whose faces stand further apart than that, but nearer than anybody builds ([`tolerance::skin`]).
+    /// Leaves whose faces stand further apart than that, but nearer than anybody builds ([`crate::geom::tolerance::skin`]).
     pub skins: BTreeMap<(u32, u32), Thin>,
     /// Pairs of solids drawn, and a box around where lines were inside both.
     pub overlaps: BTreeMap<(u32, u32), Aabb>,
-    /// Sheets that are nothing ([`closer::nothing_open`]).
+    /// Sheets that are nothing ([`super::closer::nothing_open`]).
     pub gone: BTreeSet<u32>,
     /// Intersections and symmetric differences that a line was inside.
     pub meetings: BTreeSet<Span>,
@@ -40,7 +40,7 @@ pub(super) struct Seen {
     /// Cutters that did not hold somewhere in their base.
     pub uncovering: BTreeSet<Span>,
     /// Cutters that cut the same: what their bases lost where none of them was needed, as the others cut it too. In the order
-    /// of the text, at most [`ALIKE`] each.
+    /// of the text, some few each.
     pub alike: BTreeSet<Vec<Span>>,
 }
 
