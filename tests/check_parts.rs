@@ -188,3 +188,20 @@ fn shapes_without_a_thickness_are_told() {
         assert_eq!(codes, ["W0101"], "{call}");
     }
 }
+
+/// A part split in two, and an inlay, are ordinary: their cutters cut, and nothing thin is left.
+#[test]
+fn parts_split_in_two_and_inlays_are_no_reason_for_doubt() {
+    for scene in [
+        "draw (sphere(r: 3) - half_space(z < 0)) | (sphere(r: 3) & half_space(z < 0))",
+        "let p = torus(major: 3, minor: 1)\nlet k = half_space(x < 0)\ndraw (p - k) | (p & k)",
+        "let p = cylinder(r: 5, h: 10)\ndraw p - half_space(x < 0)\ndraw p & half_space(x < 0)",
+        "draw (box([0, 0, 0], [10, 10, 10]) - cylinder(r: 2, from: [5, 5, -1], to: [5, 5, 11])) | cylinder(r: 2, from: [5, 5, 0], to: [5, 5, 10])",
+    ] {
+        let found = check_support::findings(scene);
+        assert!(
+            ["W0122", "W0125", "W0123", "W0126"].iter().all(|code| !found.contains(code)),
+            "{scene}\n{found}"
+        );
+    }
+}

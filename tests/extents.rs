@@ -48,3 +48,14 @@ fn what_has_no_end_has_none_on_that_side_alone() {
     let turned = bounds("(half_space(x > 0) & half_space(x < 1)).rotate_z(45deg)");
     assert!(!turned.is_finite() && !turned.min.is_nan() && !turned.max.is_nan(), "{turned:?}");
 }
+
+/// One solid has one box, however its cut is written.
+#[test]
+fn a_difference_has_the_box_of_the_intersection_with_the_complement() {
+    for cut in ["half_space(z < 0)", "half_space(x > 1) | half_space(y > 2)"] {
+        let [a, b] = ["(sphere(r: 5) - (K))", "(sphere(r: 5) & !(K))"].map(|s| bounds(&s.replace('K', cut)));
+        assert_eq!(a, b, "{cut}");
+    }
+    let half = bounds("(sphere(r: 5) - half_space(z < 0)).fit([100, 0, 0], height: 10)");
+    assert!((half.min - dvec3(90.0, -10.0, 0.0)).length() < 1e-9, "{half:?}");
+}

@@ -1,7 +1,7 @@
 //! The expression of everything drawn as a table: which nodes hold for given leaves, and which of them tell.
 //!
-//! A node tells where the solid drawn that it belongs to would change with it: in a union where no other operand holds, in
-//! an intersection where all others do, else always.
+//! A node tells where the solid drawn that it belongs to would change with it: in an
+//! intersection where all others do, among what is taken away together where nothing else holds, else always.
 
 use std::collections::HashMap;
 
@@ -136,6 +136,12 @@ impl Logic {
         self.meetings = outline.meetings.iter().map(node).collect();
     }
 
+    /// Whether a union is what a difference or a complement takes away.
+    fn is_taken_away(&self, union: usize) -> bool {
+        let above = self.nodes[union].above as usize;
+        above != union && self.nodes[above].kind == Kind::Not
+    }
+
     /// Says what holds and what tells where these leaves are inside.
     pub fn evaluate(&self, inside: &[bool], state: &mut State) {
         let State { count, holds, tells } = state;
@@ -161,7 +167,8 @@ impl Logic {
             tells[i] = above == i
                 || tells[above]
                     && match self.nodes[above].kind {
-                        Kind::Or => others == 0,
+                        // Of operands of a union each tells for itself: a part may be cut so that another fills it.
+                        Kind::Or => others == 0 || !self.is_taken_away(above),
                         Kind::And => others + 1 == self.nodes[above].below,
                         _ => true,
                     };

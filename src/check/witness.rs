@@ -13,6 +13,9 @@ use crate::source::Span;
 
 /// Each of many faces at one place is held against so many after it: of a hundred copies each is near some.
 const TOGETHER: usize = 12;
+/// A line that meets faces at less than this, the sine of the angle, grazes a round shape, and is in it for a short way only,
+/// whose thickness is the square of that.
+const GRAZING: f64 = 0.01;
 /// Of more cutters at one place it is not kept which.
 const ALIKE: usize = 6;
 
@@ -30,6 +33,9 @@ pub(super) struct Witness<'a> {
     scratch: Scratch,
     cuts: Vec<CutSeen>,
     meetings: Vec<bool>,
+    /// Leaves and solids drawn that a line was inside.
+    crossed: Vec<bool>,
+    parts: Vec<bool>,
     /// Nodes evaluated.
     pub steps: u64,
 }
@@ -59,6 +65,8 @@ impl<'a> Witness<'a> {
             scratch: Scratch::default(),
             cuts: outline.cuts.iter().map(CutSeen::new).collect(),
             meetings: vec![false; outline.meetings.len()],
+            crossed: vec![false; object.leaves().len()],
+            parts: vec![false; outline.parts.len()],
             steps: 0,
         }
     }
@@ -66,6 +74,9 @@ impl<'a> Witness<'a> {
     /// All that was seen, operands of cuts by their places.
     pub fn finish(self) -> Seen {
         let mut seen = self.seen;
+        let those = |list: Vec<bool>| (0..).zip(list).filter(|(_, is)| *is).map(|(i, _)| i);
+        seen.crossed.extend(those(self.crossed));
+        seen.parts.extend(those(self.parts));
         let met = self.outline.meetings.iter().zip(&self.meetings).filter(|(_, held)| **held);
         seen.meetings.extend(met.map(|(meeting, _)| meeting.at));
         for (cut, found) in self.outline.cuts.iter().zip(&self.cuts) {
@@ -147,7 +158,8 @@ impl<'a> Witness<'a> {
     /// was written so.
     fn skin_of(&self, a: &Event, b: &Event, ray: &Ray) -> Option<(u32, u32)> {
         let thickness = (b.t - a.t) * ray.dir.length() * a.slope.max(b.slope);
-        let is_skin = a.leaf != b.leaf && thickness <= tolerance::skin(self.size([a.leaf, b.leaf]));
+        let plain = GRAZING < a.slope.max(b.slope);
+        let is_skin = plain && a.leaf != b.leaf && thickness <= tolerance::skin(self.size([a.leaf, b.leaf]));
         is_skin.then_some((a.leaf.min(b.leaf), a.leaf.max(b.leaf)))
     }
 
@@ -186,8 +198,7 @@ impl<'a> Witness<'a> {
     /// A stretch with some thickness, between two points.
     fn stretch(&mut self, ends: [DVec3; 2]) {
         let (seen, holds) = (&mut self.seen, &self.state.holds);
-        let inside = self.inside.iter().enumerate().filter(|(_, inside)| **inside);
-        seen.crossed.extend(inside.map(|(leaf, _)| leaf as u32));
+        self.crossed.iter_mut().zip(&self.inside).for_each(|(crossed, inside)| *crossed |= inside);
         let parts = self.logic.parts.iter().zip(0..).filter(|(node, _)| holds[**node as usize]);
         let parts: Vec<u32> = parts.map(|(_, part)| part).collect();
         for (k, a) in parts.iter().enumerate() {
@@ -196,7 +207,7 @@ impl<'a> Witness<'a> {
                 *known = ends.into_iter().fold(*known, Aabb::including);
             }
         }
-        seen.parts.extend(parts);
+        parts.iter().for_each(|part| self.parts[*part as usize] = true);
         for (found, node) in self.meetings.iter_mut().zip(&self.logic.meetings) {
             *found |= node.is_some_and(|n| holds[n as usize]);
         }

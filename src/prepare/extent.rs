@@ -64,7 +64,6 @@ impl Lowering<'_, '_> {
             let shape = &operand.shape;
             all = match op {
                 BooleanOp::Intersection => all.intersection(self.extent(shape, to_from)?),
-                BooleanOp::Difference if 0 < i && all.is_finite() => break,
                 BooleanOp::Difference if 0 < i => all.intersection(self.extent_outside(shape, to_from)?),
                 BooleanOp::Complement => self.extent_outside(shape, to_from)?,
                 _ => all.union(self.extent(shape, to_from)?),
