@@ -189,6 +189,13 @@ fn shapes_without_a_thickness_are_told() {
     }
 }
 
+/// Planes that cross at the edge of what is looked at are no faces that coincide.
+#[test]
+fn planes_that_cross_do_not_coincide() {
+    let empty = "intersection([half_space(x < -1), half_space(y < -1), half_space(normal: [-1, -1, 0], at: [0, 0, 0])])";
+    assert_eq!(check_support::findings(&format!("draw {empty} | sphere(r: 1)")), "");
+}
+
 /// A part split in two, and an inlay, are ordinary: their cutters cut, and nothing thin is left.
 #[test]
 fn parts_split_in_two_and_inlays_are_no_reason_for_doubt() {

@@ -8,7 +8,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::flush;
-use super::lines::{WORK, through};
+use super::lines::{WORK, is_edge, through};
 use super::logic::Logic;
 use super::seen::Seen;
 use super::summit;
@@ -242,7 +242,7 @@ fn corners(leaf: &Leaf) -> Vec<Ray> {
 
 /// Lines between shapes of two sides, and about where they can meet.
 fn between([a, b]: [&[Leaf]; 2], region: &Aabb) -> Vec<Ray> {
-    if region.is_empty() || !region.is_finite() {
+    if region.is_empty() || !region.is_finite() || is_edge(region) {
         return Vec::new();
     }
     let boxes = |side: &[Leaf]| -> Vec<Aabb> {

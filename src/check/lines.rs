@@ -54,7 +54,7 @@ pub(super) fn lines(object: &Object, outline: &Outline, logic: &Logic, extents: 
     let mut number = 0;
     for (target, count) in targets {
         let target = target.intersection(whole);
-        if !target.is_finite() || target.is_empty() {
+        if !target.is_finite() || target.is_empty() || is_edge(&target) {
             continue;
         }
         for _ in 0..count {
@@ -66,6 +66,12 @@ pub(super) fn lines(object: &Object, outline: &Outline, logic: &Logic, extents: 
     }
     lines.retain(Ray::is_valid);
     lines
+}
+
+/// Whether a box is no more than a line: faces that only meet at an edge seem to coincide for lines through it.
+pub(super) fn is_edge(target: &Aabb) -> bool {
+    let flat = target.size().to_array().into_iter().filter(|side| *side == 0.0);
+    1 < flat.count()
 }
 
 /// A line through a random point of a box.
