@@ -7,6 +7,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::extents::Extents;
 use super::flush;
 use super::lines::{WORK, is_edge, through};
 use super::logic::Logic;
@@ -95,8 +96,8 @@ fn is_met(leaf: &Leaf, scratch: &mut Scratch) -> bool {
 #[derive(Debug, Default)]
 pub(super) struct Closer {
     pub rays: Vec<Ray>,
-    /// Operands of cuts, and what is where operands meet, that are looked at, or need not be, as their boxes do not meet: only of these it is told that they seem
-    /// to do nothing.
+    /// Operands of cuts, and what is where operands meet, that are looked at, or need not be, as their boxes do not meet: only
+    /// of these it is told that they seem to do nothing.
     pub pieces: BTreeSet<Span>,
     /// Solids drawn.
     pub parts: BTreeSet<u32>,
@@ -117,7 +118,7 @@ struct Pair {
 pub(super) fn closer(
     object: &Object,
     outline: &Outline,
-    (logic, extents): (&Logic, &[[Aabb; 2]]),
+    (logic, extents): (&Logic, &Extents),
     seen: &Seen,
 ) -> Closer {
     let leaves = object.leaves();
@@ -169,8 +170,8 @@ fn eaten<'a>(outline: &'a Outline, seen: &'a Seen) -> impl Iterator<Item = Range
 }
 
 /// Between what lines are sent.
-fn pairs(outline: &Outline, logic: &Logic, extents: &[[Aabb; 2]], seen: &Seen) -> Vec<Pair> {
-    let of = |node: Option<u32>| node.map_or(Aabb::EMPTY, |node| extents[node as usize][0]);
+fn pairs(outline: &Outline, logic: &Logic, extents: &Extents, seen: &Seen) -> Vec<Pair> {
+    let of = |node: Option<u32>| extents.of(node);
     let mut pairs = Vec::new();
     for (cut, nodes) in outline.cuts.iter().zip(&logic.cuts) {
         let idle = |piece: &Piece| {

@@ -42,11 +42,10 @@ impl<'a> Evidence<'a> {
         let closer = closer::closer(object, outline, (&logic, &extents), &seen);
         let (more, whole) = caster.cast(closer.rays, STEPS / closer::SHARE);
         seen = seen.add(more);
-        if !whole {
-            // Of what has not been looked at closer nothing is told.
-            return Evidence { leaves: object.leaves(), outline, seen };
+        // Of what has not been looked at closer nothing is told.
+        if whole {
+            (seen.looked_at, seen.looked_at_parts) = (closer.pieces, closer.parts);
         }
-        (seen.looked_at, seen.looked_at_parts) = (closer.pieces, closer.parts);
         seen.nothing.extend(closer::nothing(object, &seen));
         seen.gone.extend(closer::nothing_open(sheets));
         Evidence { leaves: object.leaves(), outline, seen }

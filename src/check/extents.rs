@@ -6,7 +6,18 @@ use crate::csg::Leaf;
 use crate::geom::Aabb;
 
 /// For each node a box around where it holds, and one around where it does not; sides may be unbounded.
-pub(super) fn extents(logic: &Logic, leaves: &[Leaf]) -> Vec<[Aabb; 2]> {
+#[derive(Debug)]
+pub(super) struct Extents(Vec<[Aabb; 2]>);
+
+impl Extents {
+    /// A box around where a node holds; a part without leaves has none, and is nothing.
+    pub fn of(&self, node: Option<u32>) -> Aabb {
+        node.map_or(Aabb::EMPTY, |node| self.0[node as usize][0])
+    }
+}
+
+/// Those of an expression over leaves.
+pub(super) fn extents(logic: &Logic, leaves: &[Leaf]) -> Extents {
     let start = |kind: Kind| match kind {
         Kind::Leaf(i) => {
             let leaf = &leaves[i as usize];
@@ -33,5 +44,5 @@ pub(super) fn extents(logic: &Logic, leaves: &[Leaf]) -> Vec<[Aabb; 2]> {
             Kind::Not | Kind::Leaf(_) => *sum = [fails, holds],
         }
     }
-    all
+    Extents(all)
 }

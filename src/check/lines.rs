@@ -6,6 +6,7 @@
 
 use glam::DVec3;
 
+use super::extents::Extents;
 use super::logic::Logic;
 use crate::csg::{Leaf, Object};
 use crate::geom::{Aabb, Interval, Ray};
@@ -19,15 +20,11 @@ const THROUGH: [u64; 4] = [2000, 24, 64, 48];
 pub(super) const WORK: u64 = 30_000_000;
 
 /// All test lines of an object; `extents` are boxes around the nodes of its expression ([`super::extents`]).
-pub(super) fn lines(object: &Object, outline: &Outline, logic: &Logic, extents: &[[Aabb; 2]]) -> Vec<Ray> {
+pub(super) fn lines(object: &Object, outline: &Outline, logic: &Logic, extents: &Extents) -> Vec<Ray> {
     let (leaves, nodes) = (object.leaves(), logic.len());
-    let of = |node: &Option<u32>| node.map_or(Aabb::EMPTY, |node| extents[node as usize][0]);
-    let parts: Vec<Aabb> = logic
-        .parts
-        .iter()
-        .zip(&outline.parts)
-        .map(|(node, part)| of(&Some(*node)).intersection(part.bounds))
-        .collect();
+    let parts = logic.parts.iter().zip(&outline.parts);
+    let parts: Vec<Aabb> =
+        parts.map(|(node, part)| extents.of(Some(*node)).intersection(part.bounds)).collect();
     let finite = leaves.iter().map(|l| l.bounds).chain(parts.iter().copied());
     let finite = finite.filter(|b| b.is_finite() && !b.is_empty());
     let mut whole = finite.fold(Aabb::EMPTY, Aabb::union);
@@ -44,10 +41,10 @@ pub(super) fn lines(object: &Object, outline: &Outline, logic: &Logic, extents: 
     targets.extend(leaves.iter().map(|l| (l.bounds, THROUGH[1])));
     targets.extend(parts.iter().map(|bounds| (*bounds, THROUGH[2])));
     for cut in &logic.cuts {
-        let base = cut.base.map_or(Aabb::ALL, |node| of(&Some(node)));
-        targets.extend(cut.cutters.iter().map(|cutter| (base.intersection(of(cutter)), THROUGH[3])));
+        let base = if cut.base.is_some() { extents.of(cut.base) } else { Aabb::ALL };
+        targets.extend(cut.cutters.iter().map(|cutter| (base.intersection(extents.of(*cutter)), THROUGH[3])));
     }
-    targets.extend(logic.meetings.iter().map(|meeting| (of(meeting), THROUGH[3])));
+    targets.extend(logic.meetings.iter().map(|meeting| (extents.of(*meeting), THROUGH[3])));
     let all: u64 = targets.iter().map(|t| t.1).sum();
     let every = (all * nodes.max(1) as u64).div_ceil(WORK).max(1);
     let mut lines = Vec::new();

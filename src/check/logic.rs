@@ -1,7 +1,7 @@
 //! The expression of everything drawn as a table: which nodes hold for given leaves, and which of them tell.
 //!
-//! A node tells where the solid drawn that it belongs to would change with it: in an
-//! intersection where all others do, among what is taken away together where nothing else holds, else always.
+//! A node tells where the solid drawn that it belongs to would change with it: in an intersection
+//! where all others do, among what is taken away together where nothing else holds, else always.
 
 use std::collections::HashMap;
 

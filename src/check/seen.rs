@@ -30,7 +30,8 @@ pub(super) struct Seen {
     pub meetings: BTreeSet<Span>,
     /// Cutters that took something away.
     pub cutting: BTreeSet<Span>,
-    /// Operands of cuts, intersections, symmetric differences and solids drawn that seemed to do nothing, or to be nothing, and were looked at closer.
+    /// Operands of cuts, intersections, symmetric differences and solids drawn that seemed to do nothing, or to be nothing, and
+    /// were looked at closer.
     pub looked_at: BTreeSet<Span>,
     pub looked_at_parts: BTreeSet<u32>,
     /// Bases that a line was inside.

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use crate::csg::Leaf;
 use crate::geom::{Aabb, Interval, Ray};
-use crate::solid::Scratch;
+use crate::solid::{Crossing, Scratch};
 
 /// Shapes of a side that are looked at, and directions for each.
 const SHAPES: usize = 2;
@@ -28,8 +28,10 @@ pub(super) fn lines(sides: [&[Leaf]; 2], region: &Aabb) -> Vec<Ray> {
     let mut rays = Vec::new();
     let mut scratch = Scratch::default();
     for (side, other) in [(sides[0], sides[1]), (sides[1], sides[0])] {
+        // Hundreds of lines through a scan would cost more than all the others.
+        let exact = |leaf: &&Leaf| leaf.solid.shift_bound() == 0.0;
         let finite = |leaf: &&Leaf| leaf.bounds.is_finite() && !leaf.bounds.is_empty();
-        for leaf in side.iter().filter(finite).take(SHAPES) {
+        for leaf in side.iter().filter(finite).filter(exact).take(SHAPES) {
             rays.extend(along_axes(leaf));
             for toward in directions(leaf, other, region, &mut scratch).into_iter().take(DIRECTIONS) {
                 rays.extend(below(leaf, toward, &mut scratch));
@@ -71,19 +73,23 @@ fn directions(leaf: &Leaf, other: &[Leaf], region: &Aabb, scratch: &mut Scratch)
 /// The normal of an unbounded shape where a line through a point meets it.
 fn face_of(leaf: &Leaf, at: DVec3, scratch: &mut Scratch) -> Option<DVec3> {
     DVec3::AXES.into_iter().find_map(|axis| {
-        let local = leaf.place.ray_to_local(&Ray::new(at, axis));
-        let mut found = Vec::new();
-        leaf.crossings(&local, Interval::ALL, scratch, &mut found);
+        let (local, found) = crossings(leaf, &Ray::new(at, axis), scratch);
         let crossing = found.first()?;
         Some(leaf.place.normal_to_world(leaf.solid.normal(&local, crossing, scratch)))
     })
 }
 
-/// How far along a unit direction a shape reaches on the line through a point, from there.
-fn height(leaf: &Leaf, at: DVec3, toward: DVec3, scratch: &mut Scratch) -> f64 {
-    let local = leaf.place.ray_to_local(&Ray::new(at, toward));
+/// Where the whole line of a ray crosses a shape alone; the ray in its frame.
+fn crossings(leaf: &Leaf, ray: &Ray, scratch: &mut Scratch) -> (Ray, Vec<Crossing>) {
+    let local = leaf.place.ray_to_local(ray);
     let mut found = Vec::new();
     leaf.crossings(&local, Interval::ALL, scratch, &mut found);
+    (local, found)
+}
+
+/// How far along a unit direction a shape reaches on the line through a point, from there.
+fn height(leaf: &Leaf, at: DVec3, toward: DVec3, scratch: &mut Scratch) -> f64 {
+    let (_, found) = crossings(leaf, &Ray::new(at, toward), scratch);
     found.iter().filter(|c| !c.entering).map(|c| c.t).fold(f64::NEG_INFINITY, f64::max)
 }
 

@@ -208,61 +208,53 @@ impl Reader<'_, '_> {
     }
 
     fn infix(&mut self, op: InfixOp, sign: Span, a: &Placed, b: &Placed) -> Eval<Term> {
+        use InfixOp::{Add, Divide, Multiply, Power, Remainder, Subtract};
+        match (&a.term, &b.term) {
+            (Term::Number(a), Term::Number(b)) => self.numbers(op, *a, *b, sign).map(Term::Number),
+            (Term::Angle(a), Term::Angle(b)) if matches!(op, Add | Subtract | Remainder) => {
+                self.numbers(op, *a, *b, sign).map(Term::Angle)
+            }
+            (Term::Angle(a), Term::Angle(b)) if op == Divide => {
+                self.numbers(op, *a, *b, sign).map(Term::Number)
+            }
+            (Term::Angle(a), Term::Number(b)) if matches!(op, Multiply | Divide) => {
+                self.numbers(op, *a, *b, sign).map(Term::Angle)
+            }
+            (Term::Number(a), Term::Angle(b)) if op == Multiply => {
+                self.numbers(op, *a, *b, sign).map(Term::Angle)
+            }
+            (Term::Vector(u), Term::Vector(v)) if u.len() == v.len() && op != Power => {
+                let pair = |(a, b): (&u32, &u32)| self.numbers(op, *a, *b, sign);
+                u.iter().zip(v).map(pair).collect::<Eval<Vec<u32>>>().map(Term::Vector)
+            }
+            (Term::Vector(v), Term::Number(b)) if matches!(op, Multiply | Divide | Remainder) => {
+                let one = |a: &u32| self.numbers(op, *a, *b, sign);
+                v.iter().map(one).collect::<Eval<Vec<u32>>>().map(Term::Vector)
+            }
+            (Term::Number(a), Term::Vector(v)) if op == Multiply => {
+                let one = |b: &u32| self.numbers(op, *a, *b, sign);
+                v.iter().map(one).collect::<Eval<Vec<u32>>>().map(Term::Vector)
+            }
+            _ => Err(self.unlike(op, a, b, sign).into()),
+        }
+    }
+
+    /// An operator between two numbers; the remainder is a - b floor(a / b), as outside formulas.
+    fn numbers(&mut self, op: InfixOp, a: u32, b: u32, sign: Span) -> Eval<u32> {
         let two = match op {
             InfixOp::Add => Two::Add,
             InfixOp::Subtract => Two::Subtract,
             InfixOp::Multiply => Two::Multiply,
             InfixOp::Divide => Two::Divide,
             InfixOp::Power => Two::Power,
-            _ => return self.remainder(op, sign, a, b),
+            _ => {
+                let share = self.two(Two::Divide, a, b, sign)?;
+                let whole = self.one(One::Floor, share, sign)?;
+                let taken = self.two(Two::Multiply, b, whole, sign)?;
+                return self.two(Two::Subtract, a, taken, sign);
+            }
         };
-        let sum = matches!(two, Two::Add | Two::Subtract);
-        match (&a.term, &b.term) {
-            (Term::Number(a), Term::Number(b)) => self.two(two, *a, *b, sign).map(Term::Number),
-            (Term::Angle(a), Term::Angle(b)) if sum => self.two(two, *a, *b, sign).map(Term::Angle),
-            (Term::Angle(a), Term::Angle(b)) if two == Two::Divide => {
-                self.two(two, *a, *b, sign).map(Term::Number)
-            }
-            (Term::Angle(a), Term::Number(b)) if matches!(two, Two::Multiply | Two::Divide) => {
-                self.two(two, *a, *b, sign).map(Term::Angle)
-            }
-            (Term::Number(a), Term::Angle(b)) if two == Two::Multiply => {
-                self.two(two, *a, *b, sign).map(Term::Angle)
-            }
-            (Term::Vector(u), Term::Vector(v)) if u.len() == v.len() && two != Two::Power => {
-                let pair = |(a, b): (&u32, &u32)| self.two(two, *a, *b, sign);
-                u.iter().zip(v).map(pair).collect::<Eval<Vec<u32>>>().map(Term::Vector)
-            }
-            (Term::Vector(v), Term::Number(b)) if matches!(two, Two::Multiply | Two::Divide) => {
-                v.iter().map(|a| self.two(two, *a, *b, sign)).collect::<Eval<Vec<u32>>>().map(Term::Vector)
-            }
-            (Term::Number(a), Term::Vector(v)) if two == Two::Multiply => {
-                v.iter().map(|b| self.two(two, *a, *b, sign)).collect::<Eval<Vec<u32>>>().map(Term::Vector)
-            }
-            _ => Err(self.unlike(op, a, b, sign).into()),
-        }
-    }
-
-    /// a - b floor(a / b), as outside formulas.
-    fn remainder(&mut self, op: InfixOp, sign: Span, a: &Placed, b: &Placed) -> Eval<Term> {
-        if let (Term::Vector(v), Term::Number(_)) = (&a.term, &b.term) {
-            let part = |number: &u32| {
-                let part = Placed { term: Term::Number(*number), at: a.at };
-                let left = self.remainder(op, sign, &part, b)?;
-                self.number(&Placed { term: left, at: a.at }, "a vector")
-            };
-            return v.iter().map(part).collect::<Eval<Vec<u32>>>().map(Term::Vector);
-        }
-        let (x, y, angle) = match (&a.term, &b.term) {
-            (Term::Number(x), Term::Number(y)) => (*x, *y, false),
-            (Term::Angle(x), Term::Angle(y)) => (*x, *y, true),
-            _ => return Err(self.unlike(op, a, b, sign).into()),
-        };
-        let share = self.two(Two::Divide, x, y, sign)?;
-        let whole = self.one(One::Floor, share, sign)?;
-        let taken = self.two(Two::Multiply, y, whole, sign)?;
-        let left = self.two(Two::Subtract, x, taken, sign)?;
-        Ok(if angle { Term::Angle(left) } else { Term::Number(left) })
+        self.two(two, a, b, sign)
     }
 
     fn unlike(&self, op: InfixOp, a: &Placed, b: &Placed, sign: Span) -> Diagnostic {

@@ -8,9 +8,12 @@ use crate::solid::table;
 /// A warning about a shape that its arguments make flat, unless one of them is a size of zero: of that the language warns.
 pub(super) fn flat(call: &Call, bounds: Aabb) -> Option<Diagnostic> {
     let is_flat = bounds.is_empty() || bounds.is_finite() && bounds.size().min_element() == 0.0;
+    if !is_flat {
+        return None;
+    }
+    let params = table::find(&call.word).map_or(&[][..], |primitive| primitive.decl.params);
     let is_size = |name: &str| {
-        let param =
-            table::find(&call.word).and_then(|p| p.decl.params.iter().find(|param| param.name == name));
+        let param = params.iter().find(|param| param.name == name);
         param.is_some_and(|param| matches!(param.kind, Kind::Size | Kind::SizeOrVector))
     };
     let is_zero = |value: &Value| match value {
@@ -19,7 +22,7 @@ pub(super) fn flat(call: &Call, bounds: Aabb) -> Option<Diagnostic> {
         _ => false,
     };
     let told = call.args.iter().any(|(name, arg)| is_size(name) && is_zero(&arg.value));
-    (is_flat && !told).then(|| {
+    (!told).then(|| {
         Diagnostic::warning("W0101", format!("`{}` has no thickness here: the shape is nothing", call.word))
             .at(call.at, "no size")
             .help("give it a size, or leave the shape out")

@@ -161,7 +161,8 @@ impl<'b, 'o> Lowering<'b, 'o> {
         }
         let mut parts = Vec::with_capacity(operands.len());
         let mut cut = self.outline.begin_cut(op);
-        let mut ends = vec![self.leaves.len() as u32];
+        let begin = self.leaves.len() as u32;
+        let mut middle = begin;
         for (i, operand) in operands.iter().enumerate() {
             let taken = op == BooleanOp::Complement || (op == BooleanOp::Difference && 0 < i);
             let context = Context {
@@ -177,7 +178,9 @@ impl<'b, 'o> Lowering<'b, 'o> {
             if let Some(cut) = &mut cut {
                 self.outline.add_to_cut(*cut, taken, operand.at, first..self.leaves.len() as u32);
             }
-            ends.push(self.leaves.len() as u32);
+            if i == 0 {
+                middle = self.leaves.len() as u32;
+            }
         }
         if op == BooleanOp::Union && parts.iter().any(|p| matches!(p.0, Lowered::Sheets(_))) {
             return joined_sheets(parts);
@@ -189,7 +192,9 @@ impl<'b, 'o> Lowering<'b, 'o> {
                 Lowered::Sheets(sheets) => return Err(no_inside(op.sign(), at, &words(&sheets))),
             }
         }
-        self.outline.add_meeting(op, shape.0.at, &ends);
+        if 1 < operands.len() {
+            self.outline.add_meeting(op, shape.0.at, [begin, middle, self.leaves.len() as u32]);
+        }
         Ok(Lowered::Solid(combined(op, exprs)))
     }
 

@@ -91,10 +91,8 @@ impl Outline {
         })
     }
 
-    /// Adds what is where its operands meet, or differ; `ends` are where each operand's leaves end, and before them where the
-    /// first's begin.
-    pub(super) fn add_meeting(&mut self, op: BooleanOp, at: Span, ends: &[u32]) {
-        let &[first, middle, .., last] = ends else { return };
+    /// Adds what is where its operands meet, or differ: where the leaves of the first begin and end, and where those of all do.
+    pub(super) fn add_meeting(&mut self, op: BooleanOp, at: Span, [first, middle, last]: [u32; 3]) {
         let (leaves, rest) = (first..last, middle..last);
         match op {
             BooleanOp::Intersection => {
