@@ -73,13 +73,47 @@ warning[W0125]: the gap between `box` and `box` is thinner than a billionth of t
 }
 
 finds! {
+    a_part_of_a_cutter_that_misses_is_told: "draw sphere(r: 1) - (sphere(r: 0.3, at: [1,0,0]) | sphere(r: 0.3, at: [0.95,0.95,0]))\n",
+    r#"
+warning[W0122]: this part of a cutter cuts nothing
+ --> scene.pss:1:52
+  |
+1 | draw sphere(r: 1) - (sphere(r: 0.3, at: [1,0,0]) | sphere(r: 0.3, at: [0.95,0.95,0]))
+  |      ------------ from this                        ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ takes nothing away
+  = help: move it to where it meets what it shall cut, or leave it out
+"#
+}
+
+finds! {
+    copies_of_a_cutter_that_miss_though_boxes_meet_are_told: "draw sphere(r: 1) - sphere(r: 0.2).array([[1,0,0], [0.9,0.9,0], [0,1,0], [0,0.9,-0.9]])\n",
+    r#"
+warning[W0122]: 2 of the 4 copies of this cutter cut nothing
+ --> scene.pss:1:21
+  |
+1 | draw sphere(r: 1) - sphere(r: 0.2).array([[1,0,0], [0.9,0.9,0], [0,1,0], [0,0.9,-0.9]])
+  |                     ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ the one about [0.9, 0.9, 0] takes nothing away
+  = help: move it to where it meets what it shall cut, or leave it out
+"#
+}
+
+finds! {
+    parts_of_a_cutter_that_overlap_are_no_reason_for_doubt:
+        "draw box(size: 2) - (cylinder(r: 0.3, from: [0,0,-2], to: [0,0,2]) | cylinder(r: 0.3, from: [0,-2,0], to: [0,2,0]) | sphere(r: 0.2, at: [0,0,0.9]))\n"
+}
+
+finds! {
+    a_part_of_a_cutter_that_takes_but_a_corner_is_no_reason_for_doubt:
+        "draw box(size: 2) - (sphere(r: 0.5) | sphere(r: 1, at: [1.57,1.57,1.57]))\n"
+}
+
+finds! {
     copies_of_a_cutter_that_are_apart_are_told: "draw box([0,0,0],[10,1,1]) - cylinder(r: 0.2, from: [0.5,0.5,-1], to: [0.5,0.5,2]).array([[0,0,0],[3,0,0],[12,0,0],[6,0,0]])\n",
     r#"
 warning[W0122]: one of the 4 copies of this cutter cuts nothing
  --> scene.pss:1:30
   |
 1 | draw box([0,0,0],[10,1,1]) - cylinder(r: 0.2, from: [0.5,0.5,-1], to: [0.5,0.5,2]).array([[0,0,0],[3,0,0],[12,0,0],[6,0,0]])
-  |                              ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ the one about [12.5, 0.5, 0.5] is apart from what is cut
+  |                              ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ the one about [12.5, 0.5, 0.5] takes nothing away
   = help: move it to where it meets what it shall cut, or leave it out
 "#
 }

@@ -99,8 +99,9 @@ pub(super) struct Closer {
     /// Operands of cuts, and what is where operands meet, that are looked at, or need not be, as their boxes do not meet: only
     /// of these it is told that they seem to do nothing.
     pub pieces: BTreeSet<Span>,
-    /// Solids drawn.
+    /// Solids drawn, and shapes that cutters are unions of.
     pub parts: BTreeSet<u32>,
+    pub leaves: BTreeSet<u32>,
 }
 
 /// Two sides between which lines are sent, the box they can meet in, and what is known then.
@@ -109,6 +110,13 @@ struct Pair {
     region: Aabb,
     pieces: Vec<Span>,
     part: Option<u32>,
+    leaf: Option<u32>,
+}
+
+impl Pair {
+    fn new(sides: [Range<u32>; 2], region: Aabb) -> Pair {
+        Pair { sides, region, pieces: Vec::new(), part: None, leaf: None }
+    }
 }
 
 /// Lines at what seems to be nothing, to cut nothing, or to keep clear of something else: between the middles of the shapes that
@@ -155,9 +163,10 @@ pub(super) fn closer(
         std::iter::from_fn(move || turns.next().flatten()).collect::<Vec<Ray>>()
     };
     closer.rays.par_extend(pairs.par_iter().flat_map_iter(looks));
-    for Pair { pieces, part, .. } in pairs {
+    for Pair { pieces, part, leaf, .. } in pairs {
         closer.pieces.extend(pieces);
         closer.parts.extend(part);
+        closer.leaves.extend(leaf);
     }
     closer.rays.retain(Ray::is_valid);
     closer
@@ -182,27 +191,23 @@ fn pairs(outline: &Outline, logic: &Logic, extents: &Extents, seen: &Seen) -> Ve
         let around = if cut.base.is_some() { of(nodes.base) } else { Aabb::ALL };
         let cutters = cut.cutters.iter().zip(&nodes.cutters).filter(|(piece, _)| idle(piece));
         pairs.extend(cutters.map(|(piece, node)| Pair {
-            sides: [base.clone(), piece.leaves.clone()],
-            region: around.intersection(of(*node)),
             pieces: cut.base.iter().map(|base| base.at).chain([piece.at]).collect(),
-            part: None,
+            ..Pair::new([base.clone(), piece.leaves.clone()], around.intersection(of(*node)))
+        }));
+        let shapes = nodes.shapes.iter().map(|(node, _)| (*node, logic.leaf(*node)));
+        pairs.extend(shapes.filter(|(_, leaf)| !seen.biting.contains(leaf)).map(|(node, leaf)| Pair {
+            leaf: Some(leaf),
+            ..Pair::new([base.clone(), leaf..leaf + 1], around.intersection(of(Some(node))))
         }));
     }
     let meetings = outline.meetings.iter().zip(&logic.meetings);
     let unmet = meetings.filter(|(meeting, node)| node.is_some() && !seen.meetings.contains(&meeting.at));
-    pairs.extend(unmet.map(|(m, node)| Pair {
-        sides: m.sides.clone(),
-        region: of(*node),
-        pieces: vec![m.at],
-        part: None,
-    }));
+    pairs.extend(unmet.map(|(m, node)| Pair { pieces: vec![m.at], ..Pair::new(m.sides.clone(), of(*node)) }));
     let region = |i: u32| of(logic.parts.get(i as usize).copied());
     let empty = outline.parts.iter().zip(0..).filter(|(_, i)| !seen.parts.contains(i));
-    pairs.extend(empty.map(|(part, i)| Pair {
-        sides: [part.leaves.clone(), part.leaves.clone()],
-        region: region(i),
-        pieces: Vec::new(),
-        part: Some(i),
+    pairs.extend(empty.map(|(part, i)| {
+        let sides = [part.leaves.clone(), part.leaves.clone()];
+        Pair { part: Some(i), ..Pair::new(sides, region(i)) }
     }));
     for (a, i) in outline.parts.iter().zip(0..).take(PAIRS) {
         for (b, j) in outline.parts.iter().zip(0..).skip(i as usize + 1).take(PAIRS) {
@@ -210,8 +215,7 @@ fn pairs(outline: &Outline, logic: &Logic, extents: &Extents, seen: &Seen) -> Ve
             if region.is_empty() || seen.overlaps.contains_key(&(i, j)) {
                 continue;
             }
-            let sides = [a.leaves.clone(), b.leaves.clone()];
-            pairs.push(Pair { sides, region, pieces: Vec::new(), part: None });
+            pairs.push(Pair::new([a.leaves.clone(), b.leaves.clone()], region));
         }
     }
     pairs

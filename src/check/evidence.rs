@@ -20,6 +20,7 @@ pub struct Evidence<'a> {
     pub(super) leaves: &'a [Leaf],
     /// Where they were written.
     pub(super) outline: &'a Outline,
+    pub(super) logic: Logic,
     pub(super) seen: Seen,
 }
 
@@ -45,10 +46,11 @@ impl<'a> Evidence<'a> {
         // Of what has not been looked at closer nothing is told.
         if whole {
             (seen.looked_at, seen.looked_at_parts) = (closer.pieces, closer.parts);
+            seen.looked_at_leaves = closer.leaves;
         }
         seen.nothing.extend(closer::nothing(object, &seen));
         seen.gone.extend(closer::nothing_open(sheets));
-        Evidence { leaves: object.leaves(), outline, seen }
+        Evidence { leaves: object.leaves(), outline, logic, seen }
     }
 }
 

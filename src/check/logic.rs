@@ -35,6 +35,8 @@ pub(super) struct Node {
 pub(super) struct CutNodes {
     pub base: Option<u32>,
     pub cutters: Vec<Option<u32>>,
+    /// The nodes of shapes that cutters are unions of, each with its cutter.
+    pub shapes: Vec<(u32, usize)>,
 }
 
 /// The table.
@@ -123,8 +125,34 @@ impl Logic {
         for cut in &outline.cuts {
             let base = cut.base.as_ref().and_then(|b| take(&mut bases, b));
             let cutters = cut.cutters.iter().map(|c| take(&mut cutters, c)).collect();
-            self.cuts.push(CutNodes { base, cutters });
+            self.cuts.push(CutNodes { base, cutters, shapes: Vec::new() });
         }
+        self.find_shapes();
+    }
+
+    /// Finds the shapes that cutters are unions of: leaves with nothing but unions above them up to the cutter.
+    fn find_shapes(&mut self) {
+        let cutters = self.cuts.iter().enumerate().flat_map(|(k, cut)| {
+            cut.cutters.iter().enumerate().filter_map(move |(j, node)| Some(((*node)?, (k, j))))
+        });
+        let mut cutter_of: HashMap<u32, (usize, usize)> = cutters.collect();
+        // Each node stands after the one above it.
+        for (i, node) in (0..).zip(&self.nodes) {
+            if let (Kind::Or, Some(cutter)) =
+                (self.nodes[node.above as usize].kind, cutter_of.get(&node.above))
+            {
+                let cutter = *cutter;
+                cutter_of.entry(i).or_insert(cutter);
+            }
+            if let (Kind::Leaf(_), Some((cut, cutter))) = (node.kind, cutter_of.get(&i)) {
+                self.cuts[*cut].shapes.push((i, *cutter));
+            }
+        }
+    }
+
+    /// The leaf of a node that is one.
+    pub fn leaf(&self, node: u32) -> u32 {
+        self.nodes[node as usize].leaves.0
     }
 
     /// Finds intersections and symmetric differences by their leaves: of several nodes with the same leaves each holds where

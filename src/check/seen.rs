@@ -30,10 +30,13 @@ pub(super) struct Seen {
     pub meetings: BTreeSet<Span>,
     /// Cutters that took something away.
     pub cutting: BTreeSet<Span>,
+    /// Leaves of cutters, shapes that these are unions of, that a line was inside where it was inside what they cut.
+    pub biting: BTreeSet<u32>,
     /// Operands of cuts, intersections, symmetric differences and solids drawn that seemed to do nothing, or to be nothing, and
     /// were looked at closer.
     pub looked_at: BTreeSet<Span>,
     pub looked_at_parts: BTreeSet<u32>,
+    pub looked_at_leaves: BTreeSet<u32>,
     /// Bases that a line was inside.
     pub bases: BTreeSet<Span>,
     /// Bases of which something was left.
@@ -76,6 +79,7 @@ impl Seen {
         }
         self.meetings.extend(o.meetings);
         self.cutting.extend(o.cutting);
+        self.biting.extend(o.biting);
         self.bases.extend(o.bases);
         self.left.extend(o.left);
         self.uncovering.extend(o.uncovering);

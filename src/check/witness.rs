@@ -36,6 +36,8 @@ pub(super) struct Witness<'a> {
     /// Leaves and solids drawn that a line was inside.
     crossed: Vec<bool>,
     parts: Vec<bool>,
+    /// Shapes of cutters that a line was inside where it was inside what they cut.
+    biting: Vec<bool>,
     /// Nodes evaluated.
     pub steps: u64,
 }
@@ -67,6 +69,7 @@ impl<'a> Witness<'a> {
             meetings: vec![false; outline.meetings.len()],
             crossed: vec![false; object.leaves().len()],
             parts: vec![false; outline.parts.len()],
+            biting: vec![false; object.leaves().len()],
             steps: 0,
         }
     }
@@ -77,6 +80,7 @@ impl<'a> Witness<'a> {
         let those = |list: Vec<bool>| (0..).zip(list).filter(|(_, is)| *is).map(|(i, _)| i);
         seen.crossed.extend(those(self.crossed));
         seen.parts.extend(those(self.parts));
+        seen.biting.extend(those(self.biting));
         let met = self.outline.meetings.iter().zip(&self.meetings).filter(|(_, held)| **held);
         seen.meetings.extend(met.map(|(meeting, _)| meeting.at));
         for (cut, found) in self.outline.cuts.iter().zip(&self.cuts) {
@@ -215,6 +219,10 @@ impl<'a> Witness<'a> {
             let held = |node: &Option<u32>| node.is_some_and(|n| holds[n as usize]);
             let in_base = held(&nodes.base);
             found.base |= in_base;
+            if in_base || nodes.base.is_none() {
+                let shapes = nodes.shapes.iter().map(|(node, _)| self.logic.leaf(*node) as usize);
+                shapes.filter(|i| self.inside[*i]).for_each(|i| self.biting[i] = true);
+            }
             found.left |= in_base && !nodes.cutters.iter().any(held);
             for ([cutting, uncovering], node) in found.cutters.iter_mut().zip(&nodes.cutters) {
                 *cutting |= node.is_some_and(|n| holds[n as usize] && self.state.tells[n as usize]);
