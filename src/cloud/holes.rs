@@ -5,10 +5,10 @@ use std::f64::consts::TAU;
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
-use super::Samples;
 use super::areas::tangents;
 use super::groups::Groups;
 use super::neighbours::{Near, Neighbours};
+use super::{Known, Samples};
 use crate::geom::{Aabb, Ray};
 use crate::num::eigen::symmetric3;
 
@@ -51,25 +51,30 @@ pub struct Hole {
 /// each touched by an empty disc of two spacings' radius in its tangent plane (the rim of the alpha shape,
 /// Edelsbrunner and Muecke 1994), linked where one disc may touch both.
 pub fn holes(samples: &Samples) -> Vec<Hole> {
-    holes_by(samples, &Neighbours::new(&samples.points))
+    holes_by(samples, &Known::of(&samples.points))
 }
 
-/// The same, given the search tree of the samples.
-pub fn holes_by(samples: &Samples, tree: &Neighbours) -> Vec<Hole> {
-    let may = tree.map(AROUND, |i, near| {
-        let radius = disc_radius(samples, i as usize, near);
-        may_be_open(samples, i as usize, near, radius)
-    });
+/// The same, given what is known of the samples' neighbours.
+pub fn holes_by(samples: &Samples, Known { tree, table }: &Known) -> Vec<Hole> {
+    let made = table.is_none().then(|| tree.table(AROUND));
+    let table = table.as_ref().or(made.as_ref()).filter(|table| AROUND <= table.k());
+    let may = |i: usize| {
+        table.is_none_or(|table| {
+            let near = &table.row(i)[..AROUND];
+            may_be_open(samples, i, near, disc_radius(samples, i, near))
+        })
+    };
     let touch = |(near, arcs): &mut (Vec<Near>, Vec<[f64; 2]>), i: u32| {
         let i = i as usize;
         tree.nearest(samples.points[i], AROUND + 1, near);
         near.retain(|n| n.index as usize != i);
-        near.truncate(AROUND);
-        let radius = disc_radius(samples, i, near);
+        let nearest: Vec<u32> = near.iter().take(AROUND).map(|n| n.index).collect();
+        let radius = disc_radius(samples, i, &nearest);
         tree.within(samples.points[i], 2.0 * radius, near);
         is_open(samples, i, near, radius, arcs).then_some((i as u32, radius))
     };
-    let asked: Vec<u32> = (0..).zip(may).filter(|(_, may)| *may).map(|(i, _)| i).collect();
+    let all = 0..samples.len() as u32;
+    let asked: Vec<u32> = all.into_par_iter().filter(|i| may(*i as usize)).collect();
     let open: Vec<Option<(u32, f64)>> = asked.into_par_iter().map_init(Default::default, touch).collect();
     let rim: Vec<(u32, f64)> = open.into_iter().flatten().collect();
     let labels = linked(samples, &rim).labels();
@@ -131,19 +136,19 @@ fn hole(samples: &Samples, rim: Vec<(u32, f64)>) -> Option<Hole> {
 }
 
 /// [`DISC`] times the median spacing of a sample and those around it.
-fn disc_radius(samples: &Samples, i: usize, near: &[Near]) -> f64 {
+fn disc_radius(samples: &Samples, i: usize, near: &[u32]) -> f64 {
     let mut around = [samples.spacing[i]; AROUND + 1];
-    near.iter().zip(&mut around).for_each(|(n, s)| *s = samples.spacing[n.index as usize]);
+    near.iter().zip(&mut around).for_each(|(n, s)| *s = samples.spacing[*n as usize]);
     let around = &mut around[..near.len() + 1];
     DISC * *around.select_nth_unstable_by(near.len() / 2, f64::total_cmp).1
 }
 
 /// Whether a few near samples leave a gap, and so more may.
-fn may_be_open(samples: &Samples, i: usize, near: &[Near], radius: f64) -> bool {
+fn may_be_open(samples: &Samples, i: usize, near: &[u32], radius: f64) -> bool {
     let frame = tangents(samples.normals[i]);
     let (mut arcs, mut len) = ([[0.0; 2]; AROUND], 0);
     for few in near.chunks(FEW) {
-        for arc in few.iter().filter_map(|n| arc(samples, i, n.index as usize, radius, frame)) {
+        for arc in few.iter().filter_map(|n| arc(samples, i, *n as usize, radius, frame)) {
             arcs[len] = arc;
             len += 1;
         }

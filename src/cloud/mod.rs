@@ -29,7 +29,7 @@ pub use duplicates::merge_duplicates;
 pub use error::{CloudError, CloudFault};
 pub use extent::{check_extent, coordinate_step, is_single};
 pub use open::open;
-pub use samples::{NormalSource, SampleOptions, Samples};
+pub use samples::{Known, NormalSource, SampleOptions, Samples};
 
 /// Points as a file gives them, in the file's own units.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -17,6 +17,26 @@ const STRAY_ROUNDS: usize = 6;
 /// A round that finds fewer than one in so many samples is the last: large scans always have a few more.
 const SETTLED: usize = 10_000;
 
+/// Of more samples the nearest ones are not kept, but sought again where they are wanted: beside the surface they would make the
+/// most memory that is ever held.
+const KEPT: usize = 1 << 22;
+
+/// What is known of the neighbours of samples.
+#[derive(Clone, Debug)]
+pub struct Known {
+    /// The search tree of the points.
+    pub tree: Neighbours,
+    /// The nearest of each, of not too many.
+    pub table: Option<Table>,
+}
+
+impl Known {
+    /// Of some points the tree.
+    pub fn of(points: &[DVec3]) -> Known {
+        Known { tree: Neighbours::new(points), table: None }
+    }
+}
+
 /// Where normals come from.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum NormalSource {
@@ -74,11 +94,11 @@ impl Samples {
     /// Merges, sorts and measures the points of a cloud. Fails where they carry no surface, and where an option is
     /// no positive number.
     pub fn new(cloud: Cloud, options: &SampleOptions) -> Result<Samples, CloudError> {
-        Ok(Samples::with_tree(cloud, options)?.0)
+        Ok(Samples::with_known(cloud, options)?.0)
     }
 
-    /// The same, with the search tree of the points, for who asks on.
-    pub fn with_tree(cloud: Cloud, options: &SampleOptions) -> Result<(Samples, Neighbours), CloudError> {
+    /// The same, with what is known of the points' neighbours, for who asks on.
+    pub fn with_known(cloud: Cloud, options: &SampleOptions) -> Result<(Samples, Known), CloudError> {
         check_options(options)?;
         check_extent(&cloud.points)?;
         let mut cloud = merge_duplicates(cloud);
@@ -97,7 +117,8 @@ impl Samples {
         notes.extend(more);
         let widths = widths.iter().map(|h| options.width.unwrap_or(*h) * options.smoothing).collect();
         let samples = Samples { points, normals, widths, spacing, colors, opposed, turned, estimated, notes };
-        Ok((samples, tree))
+        let table = Some(table).filter(|_| samples.len() <= KEPT);
+        Ok((samples, Known { tree, table }))
     }
 
     /// How many there are.

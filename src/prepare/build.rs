@@ -9,8 +9,8 @@ use super::equal::Likeness;
 use super::fitness::{self, Concern, Fitness};
 use super::flat::flat;
 use super::{ScanReport, complaint, files};
+use crate::cloud::Known;
 use crate::cloud::holes::{Hole, holes_by};
-use crate::cloud::neighbours::Neighbours;
 use crate::cloud::scraps::bounding;
 use crate::cloud::winding::Winding;
 use crate::cloud::{Cloud, CloudError, CloudFault, NormalSource, SampleOptions, Samples, is_single, ply};
@@ -27,8 +27,8 @@ use crate::source::Span;
 #[derive(Debug)]
 struct Scan {
     whole: Part,
-    /// The search tree of the samples, until their holes are known.
-    tree: Option<Neighbours>,
+    /// What is known of the samples' neighbours, until their holes are.
+    known: Option<Known>,
     sampling: SampleOptions,
     options: Options,
     measured: Option<(Solidity, Arc<PointSet>)>,
@@ -201,8 +201,8 @@ impl<'a> Builder<'a> {
             keep_strays: false,
         };
         let single = is_single(&cloud.points);
-        let made = Samples::with_tree(cloud, &options);
-        let (samples, tree) = made.map_err(|e| cloud_complaint(call, "the cloud", e))?;
+        let made = Samples::with_known(cloud, &options);
+        let (samples, known) = made.map_err(|e| cloud_complaint(call, "the cloud", e))?;
         let made = points::options(call);
         if let Some(name) = ["h", "smoothing"].into_iter().find(|name| call.get(name).is_some())
             && let Some(message) = fitness::too_wide(&samples)
@@ -211,11 +211,11 @@ impl<'a> Builder<'a> {
             let help = format!("samples are {spacing:.4} apart, and twice that is a usual width");
             return Err(Diagnostic::error("E0605", message).at(call.place(name), "").help(help));
         }
-        let concerns = Fitness::new(&samples, &tree, single, made.mixed).concerns();
+        let concerns = Fitness::new(&samples, &known.tree, single, made.mixed).concerns();
         let warning = |c: Concern| Diagnostic::warning(c.code, c.message).at(call.at, "").help(c.help);
         self.warnings.extend(concerns.into_iter().map(warning));
         let id = self.add(name, samples, options, made);
-        self.scan[id.0].tree = Some(tree);
+        self.scan[id.0].known = Some(known);
         Ok(id)
     }
 
@@ -230,7 +230,7 @@ impl<'a> Builder<'a> {
         let whole = Part::new(samples, &options);
         self.scan.push(Scan {
             whole,
-            tree: None,
+            known: None,
             sampling,
             options,
             measured: None,
@@ -282,7 +282,7 @@ impl<'a> Builder<'a> {
         if scan.measured.is_none() {
             let mut solidity = scan.whole.surface.measure();
             if solidity.body() == Body::Solid {
-                let found = scan.whole.holes(scan.tree.take());
+                let found = scan.whole.holes(scan.known.take());
                 try_holes(&mut solidity, &scan.whole.surface, &scan.whole.samples, &found);
             }
             let surface = &scan.whole.surface;
@@ -307,8 +307,8 @@ impl<'a> Builder<'a> {
                 let note = format!("{scraps} samples bound no inside and were dropped to close the scan");
                 self.scans[id.0].notes.push(note);
             }
-            let tree = scan.tree.take().filter(|_| scraps == 0);
-            let found = part.holes(tree);
+            let known = scan.known.take().filter(|_| scraps == 0);
+            let found = part.holes(known);
             scan.bounding = Some((part, found));
         }
         let Some((part, found)) = &scan.bounding else { unreachable!("just made") };
@@ -329,9 +329,9 @@ impl Part {
         Part { samples: Arc::new(samples), surface }
     }
 
-    /// Their holes; a search tree of the samples serves if there is one.
-    fn holes(&self, tree: Option<Neighbours>) -> Vec<Hole> {
-        holes_by(&self.samples, &tree.unwrap_or_else(|| Neighbours::new(&self.samples.points)))
+    /// Their holes; what is known of the samples' neighbours serves.
+    fn holes(&self, known: Option<Known>) -> Vec<Hole> {
+        holes_by(&self.samples, &known.unwrap_or_else(|| Known::of(&self.samples.points)))
     }
 
     /// The same without samples that bound no inside, and how many these are.

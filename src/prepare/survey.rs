@@ -94,16 +94,16 @@ pub fn survey(cloud: Cloud) -> Result<Survey, CloudError> {
     let given = |n: &Vec<DVec3>| n.iter().any(|n| *n != DVec3::ZERO);
     let normals = if cloud.normals.as_ref().is_some_and(given) { "file" } else { "estimated" };
     let single = is_single(&cloud.points);
-    let (mut samples, tree) = Samples::with_tree(cloud, &SampleOptions::default())?;
+    let (mut samples, known) = Samples::with_known(cloud, &SampleOptions::default())?;
     let bounds = samples.bounds();
     let options = Options::default();
     let surface = PointSet::new(&samples.points, &samples.normals, &samples.widths, &options);
     let mut solidity = surface.measure_whole();
-    let found = holes_by(&samples, &tree);
+    let found = holes_by(&samples, &known);
     try_holes(&mut solidity, &surface, &samples, &found);
     let body = if solidity.body() == Body::Solid { "Solid" } else { "Sheet" };
     let width = spread(&samples.widths);
-    let fitness = Fitness::new(&samples, &tree, single, options.mixed);
+    let fitness = Fitness::new(&samples, &known.tree, single, options.mixed);
     Ok(Survey {
         version: 1,
         points,
@@ -112,7 +112,7 @@ pub fn survey(cloud: Cloud) -> Result<Survey, CloudError> {
         max: bounds.max,
         diagonal: bounds.diagonal(),
         spacing: spread(&samples.spacing),
-        unevenness: unevenness(&samples, &tree),
+        unevenness: unevenness(&samples, &known.tree),
         noise: fitness.noise,
         width,
         smallest_wall: fitness.smallest_wall,

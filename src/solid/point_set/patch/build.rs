@@ -183,14 +183,25 @@ fn is_covered(set: &PointSet, frame: &Frame, margin: f64, near: &[u32]) -> bool 
     let limit = (margin - 0.71 * FINE) * frame.width;
     let flat = near.iter().map(|i| set.samples.points[*i as usize] - frame.origin);
     let flat = flat.map(|p| DVec2::new(p.dot(e1), p.dot(e2)));
-    let flat: Vec<DVec2> = flat.filter(|p| p.x.abs() < a + limit && p.y.abs() < b + limit).collect();
-    let places = |half: f64| {
-        let steps = (half / (FINE * frame.width)).ceil();
-        (0..=2 * steps as i32).map(move |i| half * (f64::from(i) / steps - 1.0))
+    let flat = flat.filter(|p| p.x.abs() < a + limit && p.y.abs() < b + limit);
+    let [across, along] = [a, b].map(|half| (half / (FINE * frame.width)).ceil());
+    let [columns, rows] = [across, along].map(|steps| 2 * steps as usize + 1);
+    let place = |half: f64, steps: f64, i: usize| half * (i as f64 / steps - 1.0);
+    // The places that may be near a coordinate, and one more on either side.
+    let about = |half: f64, steps: f64, at: f64| {
+        let [from, to] = [at - limit, at + limit].map(|x| (x / half + 1.0) * steps);
+        (from.floor().max(0.0) as usize)..(to.ceil().clamp(-1.0, 2.0 * steps) + 1.0) as usize
     };
-    places(a).all(|x| {
-        places(b).all(|y| flat.iter().any(|q| DVec2::new(x, y).distance_squared(*q) <= limit * limit))
-    })
+    let mut near = vec![false; columns * rows];
+    for q in flat {
+        for i in about(a, across, q.x) {
+            for j in about(b, along, q.y) {
+                let at = DVec2::new(place(a, across, i), place(b, along, j));
+                near[i * rows + j] |= at.distance_squared(q) <= limit * limit;
+            }
+        }
+    }
+    near.into_iter().all(|near| near)
 }
 
 /// Height and slopes of the surface at all nodes, in the units of the patch.
