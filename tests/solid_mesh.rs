@@ -213,3 +213,68 @@ fn d1_scaling_by_a_power_of_two_and_both_zeros_change_no_bit() {
         }
     }
 }
+
+/// How far a point is from a triangle: the nearest of its inside, its edges and its corners (brute force).
+fn distance([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
+    let normal = (b - a).cross(c - a);
+    let within =
+        [[a, b], [b, c], [c, a]].iter().all(|[from, to]| 0.0 < normal.dot((to - from).cross(p - from)));
+    let flat = if within { (p - a).dot(normal.normalize()).abs() } else { f64::INFINITY };
+    let edge = |[from, to]: [DVec3; 2]| {
+        let t = ((p - from).dot(to - from) / (to - from).length_squared()).clamp(0.0, 1.0);
+        p.distance(from + t * (to - from))
+    };
+    [[a, b], [b, c], [c, a]].map(edge).into_iter().fold(flat, f64::min)
+}
+
+/// A bowl with a hole in its bottom, a fin of no width, and a part apart: what is nearer than half the thickness is inside.
+#[test]
+fn an_open_mesh_with_a_thickness_is_all_points_so_near_to_it() {
+    let (mut points, triangles) = sphere(2);
+    let mut triangles: Vec<[u32; 3]> = triangles
+        .into_iter()
+        .filter(|t| t.iter().all(|i| points[*i as usize].z <= 0.3 && -0.95 < points[*i as usize].z))
+        .collect();
+    let first = points.len() as u32;
+    points.extend([dvec3(2.0, 0.0, 0.0), dvec3(2.0, 1.0, 0.0), dvec3(2.0, 0.5, 0.0), dvec3(2.0, 0.0, 1.0)]);
+    triangles.extend([[first, first + 1, first + 2], [first, first + 1, first + 3]]);
+    let mesh = made(points.clone(), triangles.clone());
+    assert_eq!(mesh.body(), Body::Sheet);
+    let radius = 0.07;
+    let thick = mesh.thickened(2.0 * radius).unwrap();
+    assert_eq!(thick.body(), Body::Solid);
+    let near = |p: DVec3| {
+        triangles.iter().map(|t| distance(t.map(|i| points[i as usize]), p)).fold(f64::INFINITY, f64::min)
+    };
+    let (mut stream, mut scratch, mut met) = (Stream::new(9), Scratch::default(), 0);
+    for i in 0..4000 {
+        let far = [0.0, 1e6][i % 2];
+        let ray = Ray::chord(&mut stream, dvec3(0.7, 0.0, 0.0), 2.2);
+        let ray = Ray { origin: ray.origin - far * ray.dir.normalize(), dir: ray.dir };
+        let found = crossings(&*thick, &ray);
+        // The roundings of an origin so far away.
+        let room = 1e-12 + far * 1e-15;
+        for c in &found {
+            let p = ray.at(c.t);
+            assert!((near(p) - radius).abs() < room, "{} {ray:?}", near(p) - radius);
+            let normal = thick.normal(&ray, c, &mut scratch);
+            assert!((normal.length() - 1.0).abs() < 1e-12 && (normal.dot(ray.dir) < 0.0) == c.entering);
+            assert!(radius < near(p + 1e-6 * normal) && near(p - 1e-6 * normal) < radius);
+            met += 1;
+        }
+        let ends: Vec<f64> = found.iter().map(|c| c.t).collect();
+        for w in ends.windows(2) {
+            let middle = near(ray.at(0.5 * (w[0] + w[1])));
+            let inside = found.iter().take_while(|c| c.t <= w[0]).last().unwrap().entering;
+            assert_eq!(inside, middle < radius, "{ray:?}");
+        }
+        let place = ray.at(stream.unit() * 4.0 / ray.dir.length() + far / ray.dir.length());
+        let t = (place - ray.origin).dot(ray.dir) / ray.dir.length_squared();
+        let inside = found.iter().take_while(|c| c.t < t).last().is_some_and(|c| c.entering);
+        assert!(inside == (near(ray.at(t)) < radius) || (near(ray.at(t)) - radius).abs() < 2.0 * room);
+    }
+    assert!(1500 < met, "{met}");
+    let bounds = thick.extent_under(&glam::DAffine3::IDENTITY);
+    assert!((bounds.max.z - (1.0 + radius)).abs() < 1e-12 && (bounds.max.x - (2.0 + radius)).abs() < 1e-12);
+    assert!(made(cube(DVec3::ZERO, DVec3::ONE).0, cube(DVec3::ZERO, DVec3::ONE).1).thickened(0.1).is_none());
+}

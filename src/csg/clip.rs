@@ -70,6 +70,10 @@ impl Solid for Clipped {
         Body::Sheet
     }
 
+    fn sheet_remedy(&self) -> &'static str {
+        "combine the shape before it is clipped; `&` with what clips it keeps the inside"
+    }
+
     fn bounds(&self) -> Aabb {
         let own = match &self.of {
             Clippee::Sheet(leaf) => leaf.bounds,

@@ -153,8 +153,8 @@ impl Builder<'_> {
             (Stage::Scan(id), Change::Close(max_hole)) => Ok(Stage::Closed(id, Closing { max_hole, scale, at })),
             (closed @ Stage::Closed(..), Change::Close(_)) => Ok(closed),
             (Stage::Exact(_), Change::Close(_)) => Err(Diagnostic::error("E0304", "only a scan has holes to close")
-                .at(at, "")
-                .help("remove the `.close`")),
+                .at(at, "this is none")
+                .help("remove the `.close`; an open mesh is given an inside by `.thicken(2mm)`")),
             (Stage::Scan(id), Change::Thicken(by)) => Ok(Stage::Exact(self.thickened(id, by))),
             (Stage::Closed(..), Change::Thicken(_)) => Err(has_inside(at)),
             (Stage::Exact(solid), Change::Thicken(by)) => {

@@ -20,7 +20,7 @@ use crate::diag::Diagnostic;
 use crate::geom::{Aabb, Placement, tolerance};
 use crate::scene::{BooleanOp, Call, FitTo, MaterialId, Operand, Shape, ShapeKind, Value};
 use crate::solid::table::{self, Build};
-use crate::solid::{Body, Solid};
+use crate::solid::{Body, SHEET, Solid};
 use crate::source::Span;
 
 /// What a `draw` has become.
@@ -189,7 +189,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
         for (part, at) in parts {
             match part {
                 Lowered::Solid(expr) => exprs.push(expr),
-                Lowered::Sheets(sheets) => return Err(no_inside(op.sign(), at, &words(&sheets))),
+                Lowered::Sheets(sheets) => return Err(no_inside(op.sign(), at, &sheets)),
             }
         }
         if 1 < operands.len() {
@@ -220,7 +220,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
         let at = call.place(by);
         match self.lower(bounding, Context { wanted: Some((by, at)), edits: None, ..context })? {
             Lowered::Solid(expr) => Ok(Lowered::Solid(Expr::And(vec![own, expr]))),
-            Lowered::Sheets(_) => Err(no_inside(by, at, "a Sheet: an open surface")),
+            Lowered::Sheets(sheets) => Err(no_inside(by, at, &sheets)),
         }
     }
 
@@ -253,7 +253,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
         let mut cutter = Lowering::new(self.builder, self.measure_all);
         let expr = match cutter.lower(&by.shape, asked)? {
             Lowered::Solid(expr) => expr,
-            Lowered::Sheets(sheets) => return Err(no_inside(".clip", by.at, &words(&sheets))),
+            Lowered::Sheets(sheets) => return Err(no_inside(".clip", by.at, &sheets)),
         };
         let outline = cutter.outline.of_one(by.at, &expr, within);
         let (by, by_at) = (Arc::new(Object::new(cutter.leaves, &expr)), by.at);
@@ -308,7 +308,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
         }
         match context.wanted {
             Some((sign, at)) if sign != BooleanOp::Union.sign() && surface.body() == Body::Sheet => {
-                Err(no_inside(sign, at, &solidity.complaint()))
+                Err(without_inside(sign, at, &solidity.complaint(), surface.sheet_remedy()))
             }
             _ => Ok(surface),
         }
@@ -446,15 +446,15 @@ fn joined_sheets(parts: Vec<(Lowered, Span)>) -> Result<Lowered, Diagnostic> {
     Ok(Lowered::Sheets(sheets))
 }
 
-/// What to say of the first sheet.
-fn words(sheets: &[Open]) -> String {
-    sheets.first().map_or_else(String::new, |sheet| sheet.leaf.solid.sheet_words())
+/// The error that a sheet stands where an inside is wanted.
+fn no_inside(sign: &str, at: Span, sheets: &[Open]) -> Diagnostic {
+    let first = sheets.first().map(|sheet| &sheet.leaf.solid);
+    let (why, remedy) = first.map_or((SHEET.into(), ""), |solid| (solid.sheet_words(), solid.sheet_remedy()));
+    without_inside(sign, at, &why, remedy)
 }
 
-fn no_inside(sign: &str, at: Span, why: &str) -> Diagnostic {
-    Diagnostic::error("E0301", format!("an operand of `{sign}` has no inside")).at(at, why).help(
-        "close it, `scan.close(max_hole: 8mm)`, give it a thickness, `scan.thicken(2mm)`, take more samples if its walls are thin, or put a solid in its place, such as `half_space(z < 0)` for a floor",
-    )
+fn without_inside(sign: &str, at: Span, why: &str, remedy: &str) -> Diagnostic {
+    Diagnostic::error("E0301", format!("an operand of `{sign}` has no inside")).at(at, why).help(remedy)
 }
 
 fn colorless(shape: &Shape) -> Diagnostic {

@@ -59,6 +59,9 @@ pub enum Cost {
     Heavy,
 }
 
+/// What to say of a sheet of which no more is known.
+pub const SHEET: &str = "a Sheet: an open surface";
+
 /// A solid or a sheet in its own frame.
 ///
 /// Methods take `&self`; what a query needs beside the answer is lent as [`Scratch`]. Rays are finite and
@@ -134,7 +137,12 @@ pub trait Solid: Send + Sync + Debug {
 
     /// What to say of a sheet where an inside is wanted.
     fn sheet_words(&self) -> String {
-        "a Sheet: an open surface".into()
+        SHEET.into()
+    }
+
+    /// What to do about it then.
+    fn sheet_remedy(&self) -> &'static str {
+        "give it a thickness, `surface.thicken(2mm)`, or put a solid in its place, such as `half_space(z < 0)` for a floor"
     }
 
     /// What asking costs: the cheap are asked before the dear.

@@ -3,7 +3,10 @@
 //! two of those overlap, their common part is outside.
 
 mod shear;
+mod thick;
 mod tree;
+
+use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
@@ -14,6 +17,7 @@ use crate::mesh::{Mesh, Seams};
 use crate::scene::{Decl, Group, Kind, Param};
 
 use shear::Shear;
+use thick::ThickMesh;
 use tree::Tree;
 
 /// The line of the table.
@@ -125,6 +129,11 @@ impl Solid for TriangleMesh {
 
     fn normal(&self, ray: &Ray, crossing: &Crossing, _: &mut Scratch) -> DVec3 {
         parity::outward(self.normal_of(crossing.part), ray, crossing)
+    }
+
+    fn thickened(&self, by: f64) -> Option<Arc<dyn Solid>> {
+        let sheet = self.body() == Body::Sheet;
+        sheet.then(|| Arc::new(ThickMesh::new(&self.points, self.tree.clone(), 0.5 * by)) as Arc<dyn Solid>)
     }
 
     fn sheet_words(&self) -> String {

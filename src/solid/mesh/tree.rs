@@ -66,8 +66,13 @@ impl Tree {
 
     /// Shows every triangle whose leaf's box the ray's line meets, at its faces and within roundings too.
     pub fn visit(&self, ray: &Ray, show: impl FnMut(u32)) {
+        self.visit_near(ray, 0.0, show);
+    }
+
+    /// The same for lines that come nearer than a distance to the box, along each axis.
+    pub fn visit_near(&self, ray: &Ray, distance: f64, show: impl FnMut(u32)) {
         let inverse = ray.dir.recip();
-        self.nodes.visit(|bounds| meets(bounds, ray, inverse), show);
+        self.nodes.visit(|bounds| meets(&bounds.inflated(distance), ray, inverse), show);
     }
 }
 

@@ -215,6 +215,10 @@ impl Solid for PointSet {
         self.body
     }
 
+    fn sheet_remedy(&self) -> &'static str {
+        "close it, `scan.close(max_hole: 8mm)`, give it a thickness, `scan.thicken(2mm)`, or take more samples if its walls are thin"
+    }
+
     fn bounds(&self) -> Aabb {
         self.samples.reach()
     }
