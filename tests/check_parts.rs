@@ -227,7 +227,8 @@ fn shapes_without_a_thickness_are_told() {
 #[test]
 fn planes_that_cross_do_not_coincide() {
     let empty = "intersection([half_space(x < -1), half_space(y < -1), half_space(normal: [-1, -1, 0], at: [0, 0, 0])])";
-    assert_eq!(check_support::findings(&format!("draw {empty} | sphere(r: 1)")), "");
+    let found = check_support::findings(&format!("draw {empty} | sphere(r: 1)"));
+    assert!(!found.contains("W0121") && found.contains("W0123"), "{found}");
 }
 
 /// A part split in two, and an inlay, are ordinary: their cutters cut, and nothing thin is left.
@@ -244,5 +245,56 @@ fn parts_split_in_two_and_inlays_are_no_reason_for_doubt() {
             ["W0122", "W0125", "W0123", "W0126"].iter().all(|code| !found.contains(code)),
             "{scene}\n{found}"
         );
+    }
+}
+
+/// Round things stand and lie on floors of any size, and a cutter within another's cut leaves nothing thin.
+#[test]
+fn what_touches_a_floor_at_a_point_or_along_a_line_shares_no_face_with_it() {
+    for size in [3.0, 30.0, 1e3, 1e5, 1e6] {
+        let floor = format!("draw box([-{size}, -{size}, -1], [{size}, {size}, 0])\n");
+        for round in [
+            "sphere(r: 1, at: [0, 0, 1])",
+            "capsule(r: 1, from: [0, 0, 1], to: [3, 0, 1])",
+            "capsule(r: 1, from: [0.3, 0.2, 1], to: [2, 1, 1])",
+            "cylinder(r: 1, from: [0, 0, 1], to: [2, 2, 1])",
+            "torus(major: 2, minor: 0.5).move([0, 0, 0.5])",
+        ] {
+            let scene = format!("{floor}draw {round}\n");
+            assert_eq!(check_support::findings(&scene), "", "{scene}");
+        }
+        let standing = format!("{floor}draw cylinder(r: 1, h: 2)\n");
+        let found = check_support::findings(&standing);
+        assert!(found.contains("W0121") && !found.contains("W0125"), "{standing}{found}");
+    }
+}
+
+/// Unbounded shapes that leave nothing, or do not meet, are told; those that meet far away are not.
+#[test]
+fn unbounded_shapes_that_do_not_meet_are_told() {
+    let cylinder = "quadric(squares: [1, 1, 0], constant: -1)";
+    let beside = "quadric(squares: [1, 1, 0], linear: [-20, 0, 0], constant: 99)";
+    for (scene, code) in [
+        ("half_space(x + y < 0) & half_space(x + y > 1)".into(), "W0123"),
+        ("half_space(x + y < 0) - half_space(x + y > 1)".into(), "W0122"),
+        ("half_space(z <= 0) & half_space(z >= 0)".into(), "W0123"),
+        ("half_space(z < 0) - half_space(z < 0)".into(), "W0124"),
+        ("half_space(x < 0) & half_space(y < 0) & half_space(x + y > 2)".into(), "W0123"),
+        (format!("{cylinder} & half_space(x > 2)"), "W0123"),
+        (format!("{cylinder} & {beside}"), "W0123"),
+        (format!("{cylinder} - {beside}"), "W0122"),
+    ] {
+        let found = check_support::findings(&format!("draw {scene}"));
+        assert!(found.contains(code), "{scene}\n{found}");
+    }
+    for scene in [
+        "half_space(z < 0) & half_space(z > 1 + 1e-9 * x)".into(),
+        "half_space(z < 0) - half_space(z > 1 + 1e-9 * x)".into(),
+        "half_space(x < 0) & half_space(y < 0) & half_space(z < 1) & half_space(x + y + z > -2)".into(),
+        "half_space(x < 0) & half_space(y < 0) & half_space(1e-6 * x + 1e-6 * y - z > 1)".into(),
+        format!("{cylinder} & half_space(x > 2 - 1e-6 * z)"),
+        format!("{cylinder} - half_space(x > 2 - 1e-6 * z)"),
+    ] {
+        assert_eq!(check_support::findings(&format!("draw {scene}")), "", "{scene}");
     }
 }

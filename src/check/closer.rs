@@ -7,6 +7,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::endless;
 use super::extents::Extents;
 use super::flush;
 use super::lines::{WORK, is_edge, through};
@@ -144,24 +145,16 @@ pub(super) fn closer(
     most -= flush.len();
     closer.rays.extend(flush);
     let (mut pairs, mut places) = (pairs(outline, logic, extents, seen), 0);
-    // Sides that cannot meet cost nothing; of those that may meet without an end nothing is known.
+    // Sides that cannot meet cost nothing.
     pairs.retain(|pair| {
-        let is_kept = pair.region.is_empty() || pair.region.is_finite() && places < PLACES.min(most / FEWEST);
+        let is_kept = pair.region.is_empty()
+            || places < PLACES.min(most / FEWEST)
+                && (pair.region.is_finite() || endless::can_tell(pair.sides.each_ref().map(own)));
         places += usize::from(is_kept && !pair.region.is_empty());
         is_kept
     });
     let each = most / places.clamp(1, PLACES);
-    let looks = |Pair { sides: [a, b], region, .. }: &Pair| {
-        let between = between([own(a), own(b)], region);
-        let summits = if region.is_empty() { Vec::new() } else { summit::lines([own(a), own(b)], region) };
-        // The first of both where there are few.
-        let (mut between, mut summits) = (between.into_iter(), summits.into_iter());
-        let mut turns = (0..each).map(move |i| match i % 2 {
-            0 => between.next().or_else(|| summits.next()),
-            _ => summits.next().or_else(|| between.next()),
-        });
-        std::iter::from_fn(move || turns.next().flatten()).collect::<Vec<Ray>>()
-    };
+    let looks = |Pair { sides, region, .. }: &Pair| look(sides.each_ref().map(own), region, each);
     closer.rays.par_extend(pairs.par_iter().flat_map_iter(looks));
     for Pair { pieces, part, leaf, .. } in pairs {
         closer.pieces.extend(pieces);
@@ -170,6 +163,26 @@ pub(super) fn closer(
     }
     closer.rays.retain(Ray::is_valid);
     closer
+}
+
+/// So many lines at where two sides may meet, at most.
+fn look(sides: [&[Leaf]; 2], region: &Aabb, most: usize) -> Vec<Ray> {
+    if region.is_empty() {
+        return Vec::new();
+    }
+    if !region.is_finite() {
+        let mut lines = endless::lines(sides, region);
+        lines.truncate(most);
+        return lines;
+    }
+    // The first of both where there are few.
+    let (mut between, mut summits) =
+        (between(sides, region).into_iter(), summit::lines(sides, region).into_iter());
+    let mut turns = (0..most).map(|i| match i % 2 {
+        0 => between.next().or_else(|| summits.next()),
+        _ => summits.next().or_else(|| between.next()),
+    });
+    std::iter::from_fn(|| turns.next().flatten()).collect()
 }
 
 /// The leaves of bases of which nothing was seen to be left.
@@ -247,7 +260,7 @@ fn corners(leaf: &Leaf) -> Vec<Ray> {
 
 /// Lines between shapes of two sides, and about where they can meet.
 fn between([a, b]: [&[Leaf]; 2], region: &Aabb) -> Vec<Ray> {
-    if region.is_empty() || !region.is_finite() || is_edge(region) {
+    if is_edge(region) {
         return Vec::new();
     }
     let boxes = |side: &[Leaf]| -> Vec<Aabb> {

@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 
 use super::{Evidence, Finding};
 use crate::diag::Diagnostic;
-use crate::geom::{Aabb, tolerance};
 
 /// The line of the table.
 pub(super) const FINDING: Finding = Finding { code: "W0121", doc: "Faces of two shapes coincide.", find };
@@ -21,14 +20,7 @@ fn find(evidence: &Evidence) -> Vec<Diagnostic> {
     };
     // Faces that leave a film have a finding of their own.
     let seen = &evidence.seen;
-    // Round faces may touch at a point.
-    let is_area = |((a, b), place): &(&(u32, u32), &Aabb)| {
-        let sizes = [a, b].map(|leaf| evidence.leaves[*leaf as usize].bounds.diagonal());
-        let scale = place.farthest();
-        let size = sizes.into_iter().filter(|size| size.is_finite()).fold(scale, f64::min);
-        tolerance::touch(tolerance::cleanup(scale), size) < place.diagonal()
-    };
-    let shared = seen.shared.iter().filter(is_area).map(|(pair, _)| pair);
+    let shared = seen.shared.iter().filter(|(_, near)| near.is_area()).map(|(pair, _)| pair);
     let shared = shared.filter(|pair| !seen.films.contains_key(pair));
     let pairs: BTreeSet<_> = shared.map(place).collect();
     let warn = |(a, b)| match a == b {

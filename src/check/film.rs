@@ -4,10 +4,9 @@
 
 use std::collections::BTreeMap;
 
-use super::seen::Thin;
+use super::seen::Near;
 use super::{Evidence, Finding};
 use crate::diag::Diagnostic;
-use crate::geom::{Aabb, tolerance};
 use crate::source::Span;
 
 /// The line of the table.
@@ -15,11 +14,10 @@ pub(super) const FINDING: Finding =
     Finding { code: "W0125", doc: "What is left, or open, between shapes is too thin to be meant.", find };
 
 fn find(evidence: &Evidence) -> Vec<Diagnostic> {
-    let films = over_areas(evidence, &evidence.seen.films, |place, _| tolerance::cleanup(place.farthest()));
+    let films = over_areas(evidence, &evidence.seen.films);
     let name = |leaf: u32| &*evidence.leaves[leaf as usize].name;
-    let kept = over_areas(evidence, &evidence.seen.skins, |_, size| tolerance::skin(size))
-        .into_iter()
-        .filter(|(at, _)| !films.contains_key(at));
+    let kept = over_areas(evidence, &evidence.seen.skins);
+    let kept = kept.into_iter().filter(|(at, _)| !films.contains_key(at));
     let kept: Vec<Diagnostic> =
         kept.map(|(at, (a, b, film))| between(at, [a, b].map(name), film, &KEPT)).collect();
     let warn = |(at, (a, b, film)): ([Span; 2], (u32, u32, bool))| match a == b {
@@ -37,30 +35,16 @@ fn find(evidence: &Evidence) -> Vec<Diagnostic> {
 /// By the places of two calls the leaves that were seen, and whether it is a film.
 type Pairs = BTreeMap<[Span; 2], (u32, u32, bool)>;
 
-/// What is thin over an area: at a tip, an edge, or where round faces touch, everything is, up to some way from there.
-fn over_areas(
-    evidence: &Evidence,
-    seen: &BTreeMap<(u32, u32), Thin>,
-    thickness: fn(&Aabb, f64) -> f64,
-) -> Pairs {
+/// What is thin over an area.
+fn over_areas(evidence: &Evidence, seen: &BTreeMap<(u32, u32), Near>) -> Pairs {
     let calls = &evidence.outline.calls;
     let mut pairs = Pairs::new();
-    for (&(a, b), Thin { place, film }) in seen {
-        let sizes = [a, b].map(|leaf| evidence.leaves[leaf as usize].bounds.diagonal());
-        let finite = sizes.into_iter().filter(|size| size.is_finite());
-        let size = finite.reduce(f64::min).unwrap_or_else(|| place.farthest());
-        let touch = tolerance::touch(thickness(place, size), size).min(SMALL * size);
-        if place.diagonal() < touch {
-            continue;
-        }
+    for (&(a, b), near) in seen.iter().filter(|(_, near)| near.is_area()) {
         let (at, of) = (calls[a as usize], calls[b as usize]);
-        pairs.entry([at.min(of), at.max(of)]).or_insert((a, b, *film)).2 |= film;
+        pairs.entry([at.min(of), at.max(of)]).or_insert((a, b, near.film)).2 |= near.film;
     }
     pairs
 }
-
-/// What is thin over so much of a shape is thin over an area, however large the clean-up is.
-const SMALL: f64 = 0.01;
 
 /// What is said of thin things: how thin they are, and what becomes of a film and of a gap.
 struct Words {

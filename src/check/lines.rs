@@ -84,6 +84,8 @@ pub(super) struct Event {
     pub t: f64,
     pub leaf: u32,
     pub crossing: Crossing,
+    /// Outward, of unit length.
+    pub normal: DVec3,
     /// |d . n|, d of unit length.
     pub slope: f64,
 }
@@ -119,7 +121,7 @@ pub(super) fn ask(
             for crossing in found.iter().filter(|c| lo < c.t && c.t <= answer.range.hi) {
                 let normal = leaf.place.normal_to_world(leaf.solid.normal(&local, crossing, scratch));
                 let slope = unit.dot(normal).abs();
-                events.push(Event { t: crossing.t, leaf: i as u32, crossing: *crossing, slope });
+                events.push(Event { t: crossing.t, leaf: i as u32, crossing: *crossing, normal, slope });
             }
             if met.hi <= answer.range.hi || answer.range.hi <= lo {
                 break;

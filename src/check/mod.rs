@@ -9,6 +9,7 @@ mod closer;
 mod coincident;
 mod dead_cutter;
 mod empty;
+mod endless;
 mod evidence;
 mod extents;
 mod film;

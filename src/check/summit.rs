@@ -32,7 +32,7 @@ pub(super) fn lines(sides: [&[Leaf]; 2], region: &Aabb) -> Vec<Ray> {
         let exact = |leaf: &&Leaf| leaf.solid.shift_bound() == 0.0;
         let finite = |leaf: &&Leaf| leaf.bounds.is_finite() && !leaf.bounds.is_empty();
         for leaf in side.iter().filter(finite).filter(exact).take(SHAPES) {
-            rays.extend(along_axes(leaf));
+            rays.extend(along_axes(leaf, leaf.bounds.center(), leaf.bounds.diagonal(), TILT));
             for toward in directions(leaf, other, region, &mut scratch).into_iter().take(DIRECTIONS) {
                 rays.extend(below(leaf, toward, &mut scratch));
             }
@@ -42,11 +42,10 @@ pub(super) fn lines(sides: [&[Leaf]; 2], region: &Aabb) -> Vec<Ray> {
 }
 
 /// Nearly along the axes of a shape, through its middle: where another one touches it all around.
-fn along_axes(leaf: &Leaf) -> [Ray; 3] {
-    let (middle, length) = (leaf.bounds.center(), leaf.bounds.diagonal());
+pub(super) fn along_axes(leaf: &Leaf, middle: DVec3, length: f64, tilt: f64) -> [Ray; 3] {
     [0, 1, 2].map(|axis| {
         let (u, v) = (DVec3::AXES[axis], DVec3::AXES[(axis + 1) % 3]);
-        let local = u + TILT * v + 0.77 * TILT * DVec3::AXES[(axis + 2) % 3];
+        let local = u + tilt * v + 0.77 * tilt * DVec3::AXES[(axis + 2) % 3];
         let dir = (leaf.place.world_from_local.matrix3 * local).normalize_or_zero();
         Ray::new(middle, length * dir)
     })

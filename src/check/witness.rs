@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::lines::{self, Event};
 use super::logic::{Logic, State};
-use super::seen::{Seen, Thin};
+use super::seen::{Near, Seen, Spread};
 use crate::csg::Object;
 use crate::geom::{Aabb, Ray, tolerance};
 use crate::prepare::{Cutting, Outline};
@@ -108,13 +108,11 @@ impl<'a> Witness<'a> {
     fn faces(&mut self, events: &[Event], ray: &Ray) {
         for (i, a) in events.iter().enumerate() {
             for b in events[i + 1..].iter().take(TOGETHER) {
-                if !self.is_thin(a, b, ray) {
+                let Some(near) = self.thin(a, b, ray) else {
                     break;
-                }
+                };
                 if a.leaf != b.leaf && !self.is_one_cutter([a.leaf, b.leaf]) {
-                    let pair = (a.leaf.min(b.leaf), a.leaf.max(b.leaf));
-                    let place = self.seen.shared.entry(pair).or_default();
-                    *place = place.including(ray.at(a.t));
+                    self.seen.shared.entry(pair(a, b)).or_default().add(near);
                 }
             }
         }
@@ -130,25 +128,40 @@ impl<'a> Witness<'a> {
         is_same && part(pair[0]) != part(pair[1])
     }
 
-    /// Whether what lies between two crossings is nothing to the clean-up of set algebra.
-    fn is_thin(&self, a: &Event, b: &Event, ray: &Ray) -> bool {
-        self.is_within(a, b, ray, (self.eye, tolerance::cleanup))
+    /// What two crossings are where what lies between them is nothing to the clean-up of set algebra.
+    fn thin(&self, a: &Event, b: &Event, ray: &Ray) -> Option<Near> {
+        self.within(a, b, ray, self.margin(a, b, ray, (self.eye, tolerance::cleanup)))
     }
 
-    /// Whether two crossings stand no further apart, along a normal, than a tolerance of the scale in play, at least so large.
-    fn is_within(&self, a: &Event, b: &Event, ray: &Ray, (least, tolerance): (f64, fn(f64) -> f64)) -> bool {
+    /// How far apart two crossings may stand, along a normal, by a tolerance of the scale in play, at least so large.
+    fn margin(&self, a: &Event, b: &Event, ray: &Ray, (least, tolerance): (f64, fn(f64) -> f64)) -> f64 {
         let leaves = [a, b].map(|e| &self.object.leaves()[e.leaf as usize]);
         let scale = ray.origin.length().max(ray.at(a.t).length().min(ray.at(b.t).length()));
         let scale = scale.max(leaves[0].scale()).max(leaves[1].scale()).max(least);
         let error = a.crossing.shift * leaves[0].place.stretch + b.crossing.shift * leaves[1].place.stretch;
-        let thickness = (b.t - a.t) * ray.dir.length() * a.slope.max(b.slope);
-        thickness <= tolerance(scale) + error
+        tolerance(scale) + error
     }
 
-    /// The leaves of a thin stretch that is a film: of one leaf, or thicker than faces that are meant to coincide leave it.
-    fn film_of(&self, a: &Event, b: &Event, ray: &Ray) -> Option<(u32, u32)> {
-        let built = a.leaf == b.leaf || !self.is_within(a, b, ray, (0.0, tolerance::film));
-        built.then_some((a.leaf.min(b.leaf), a.leaf.max(b.leaf)))
+    /// What two crossings are that stand no further apart, along a normal, than a margin.
+    fn within(&self, a: &Event, b: &Event, ray: &Ray, margin: f64) -> Option<Near> {
+        let thickness = (b.t - a.t) * ray.dir.length() * a.slope.max(b.slope);
+        (thickness <= margin).then(|| {
+            let (i, j) = pair(a, b);
+            let boxes = [i, j].map(|leaf| self.object.leaves()[leaf as usize].bounds);
+            let finite = || boxes.iter().filter(|bounds| bounds.is_finite());
+            // A line is as long as what it looks at, and begins there.
+            let far = || ray.origin.length() + ray.dir.length();
+            let size = finite().map(Aabb::diagonal).reduce(f64::min).unwrap_or_else(far);
+            let about = finite().next().map_or(DVec3::ZERO, Aabb::center);
+            let is_along = a.normal.cross(b.normal).length() <= tolerance::run_along(margin, size);
+            let along = if is_along { Spread::of(ray.at(a.t) - about) } else { Spread::default() };
+            Near { margin, size, seen: 1, along, film: false }
+        })
+    }
+
+    /// Whether a thin stretch is a film: of one leaf, or thicker than faces that are meant to coincide leave it.
+    fn is_film(&self, a: &Event, b: &Event, ray: &Ray) -> bool {
+        a.leaf == b.leaf || self.within(a, b, ray, self.margin(a, b, ray, (0.0, tolerance::film))).is_none()
     }
 
     /// The size that the thickness of what two leaves leave is held against: of the larger, or how far they reach.
@@ -158,13 +171,12 @@ impl<'a> Witness<'a> {
         sizes.reduce(f64::max).unwrap_or_else(|| leaves[0].scale().max(leaves[1].scale()))
     }
 
-    /// The leaves of a stretch that is not thin to the clean-up, but thinner than anybody builds of two: one shape as thin
-    /// was written so.
-    fn skin_of(&self, a: &Event, b: &Event, ray: &Ray) -> Option<(u32, u32)> {
-        let thickness = (b.t - a.t) * ray.dir.length() * a.slope.max(b.slope);
-        let plain = GRAZING < a.slope.max(b.slope);
-        let is_skin = plain && a.leaf != b.leaf && thickness <= tolerance::skin(self.size([a.leaf, b.leaf]));
-        is_skin.then_some((a.leaf.min(b.leaf), a.leaf.max(b.leaf)))
+    /// What a stretch is that is not thin to the clean-up, but thinner than anybody builds of two: one shape as thin was
+    /// written so.
+    fn skin(&self, a: &Event, b: &Event, ray: &Ray) -> Option<Near> {
+        let plain = GRAZING < a.slope.max(b.slope) && a.leaf != b.leaf;
+        let margin = tolerance::skin(self.size([a.leaf, b.leaf]));
+        self.within(a, b, ray, margin).filter(|_| plain)
     }
 
     /// The stretches between crossings, the unbounded ones included.
@@ -180,16 +192,16 @@ impl<'a> Witness<'a> {
             }
             self.logic.evaluate(&self.inside, &mut self.state);
             let any = self.logic.parts.iter().any(|p| self.state.holds[*p as usize]);
-            let thin = before.zip(after).filter(|(a, b)| self.is_thin(a, b, ray));
-            let film = thin.and_then(|(a, b)| self.film_of(a, b, ray));
-            let skin = before.zip(after).filter(|_| thin.is_none());
-            let skin = skin.and_then(|(a, b)| self.skin_of(a, b, ray));
-            let place = before.map_or(Aabb::EMPTY, |at| Aabb::EMPTY.including(ray.at(at.t)));
+            let both = before.zip(after);
+            let thin = both.and_then(|(a, b)| Some((pair(a, b), self.thin(a, b, ray)?)));
+            let film = thin.filter(|_| both.is_some_and(|(a, b)| self.is_film(a, b, ray)));
+            let skin = both.filter(|_| thin.is_none());
+            let skin = skin.and_then(|(a, b)| Some((pair(a, b), self.skin(a, b, ray)?)));
             for (follower, found, seen) in
                 [(&mut films, film, &mut self.seen.films), (&mut skins, skin, &mut self.seen.skins)]
             {
-                if let Some(pair) = follower.next(any, found) {
-                    seen.entry(pair).or_default().add(Thin { place, film: !any });
+                if let Some((pair, near)) = follower.next(any, found) {
+                    seen.entry(pair).or_default().add(Near { film: !any, ..near });
                 }
             }
             if thin.is_none() {
@@ -260,24 +272,31 @@ impl CutSeen {
     }
 }
 
+/// The leaves of two crossings.
+fn pair(a: &Event, b: &Event) -> (u32, u32) {
+    (a.leaf.min(b.leaf), a.leaf.max(b.leaf))
+}
+
+/// A stretch between faces near each other: their leaves, and how they stand.
+type Stretch = ((u32, u32), Near);
+
 /// Follows the truth along a line for films and slits: stretches that differ from both neighbours, which are alike.
 #[derive(Default)]
 struct Films {
-    /// The truth before the film, and the leaves whose faces bound it.
-    open: Option<(bool, (u32, u32))>,
+    /// The truth before the film, and the film.
+    open: Option<(bool, Stretch)>,
     before: Option<bool>,
 }
 
 impl Films {
-    /// The next stretch: its truth, and the leaves whose faces bound it if it is thin. Returns the leaves of a film that
-    /// ended here.
-    fn next(&mut self, holds: bool, thin_of: Option<(u32, u32)>) -> Option<(u32, u32)> {
+    /// The next stretch: its truth, and how its ends stand if it is thin. Returns a film that ended here.
+    fn next(&mut self, holds: bool, thin: Option<Stretch>) -> Option<Stretch> {
         let open = self.open.take();
-        let found = open.filter(|(before, _)| *before == holds).map(|(_, leaves)| leaves);
-        if let (Some(before), Some(leaves)) = (self.before, thin_of)
+        let found = open.filter(|(before, _)| *before == holds).map(|(_, film)| film);
+        if let (Some(before), Some(film)) = (self.before, thin)
             && before != holds
         {
-            self.open = Some((before, leaves));
+            self.open = Some((before, film));
         }
         self.before = Some(holds);
         found

@@ -37,6 +37,13 @@ pub fn touch(thickness: f64, size: f64) -> f64 {
     16.0 * (thickness * size).sqrt()
 }
 
+/// The sine of the angle below which two faces that stand within a thickness of each other run along each other there: that
+/// thickness is not left, then, over so far as [`touch`] asks for. Where round faces of that size touch it is as small at one
+/// place in some hundreds of those that are near.
+pub fn run_along(thickness: f64, size: f64) -> f64 {
+    (thickness / size).sqrt() / 16.0
+}
+
 /// What is thinner than this, of shapes of some size, is drawn if the clean-up leaves it, but hardly meant: a user who asks
 /// for scans no more exact than [`POINTS`] does not build walls as thin.
 pub fn skin(size: f64) -> f64 {

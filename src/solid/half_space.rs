@@ -62,7 +62,7 @@ impl Solid for HalfSpace {
 
     fn limits(&self) -> [Aabb; 2] {
         let mut limits = [Aabb::ALL; 2];
-        if let Some(axis) = (0..3).find(|axis| self.normal[*axis].abs() == 1.0) {
+        if let Some(axis) = (0..3).find(|axis| self.normal.abs() == DVec3::AXES[*axis]) {
             let [below, above] = &mut limits;
             below.max[axis] = self.offset;
             above.min[axis] = self.offset;
