@@ -35,7 +35,7 @@ fn a_box_has_one_span_with_every_field() {
     // How sure the end is depends on rounding alone.
     for end in ["enter", "exit"] {
         let err = answer["spans"][0][end]["err"].take();
-        assert!((0.0..1e-14).contains(&err.as_f64().unwrap()), "{err}");
+        assert!((1e-16..1e-13).contains(&err.as_f64().unwrap()), "{err}");
         answer["spans"][0][end]["err"] = json!(0.0);
     }
     let spans = [json!({ "enter": end(2.0, 0.0, -1.0), "exit": end(2.5, 1.0, 1.0) })];
@@ -152,4 +152,19 @@ fn p15_a_cloud_of_1e_minus_30_has_its_spans() {
         near(&span["exit"]["t"], &[6.0 * unit], 1e-4 * unit);
     }
     assert_eq!(lines[2]["spans"], json!([]));
+}
+
+/// From far away and at a graze roundings are what is left; a ball of radius 2 about z = 3 is known exactly.
+#[test]
+fn the_bound_of_error_holds_for_closed_forms_from_far_away_and_at_a_graze() {
+    let scene = "draw sphere(r: 2, at: [0, 0, 3])";
+    for (far, beside) in [(7.0, 0.3), (1e4, 1.0), (1e7, 1.9), (1e7, 1.9999999), (1e3, 1.999999999999)] {
+        let answer = probe(scene, &format!("-{far},{beside},3 0.5,0,0"));
+        let half = (4.0f64 - beside * beside).sqrt();
+        for (end, exact) in [("enter", 2.0 * (far - half)), ("exit", 2.0 * (far + half))] {
+            let end = &answer["spans"][0][end];
+            let (t, err) = (end["t"].as_f64().unwrap(), end["err"].as_f64().unwrap());
+            assert!((t - exact).abs() <= err && err < 1e-6 * far, "{t} {exact} {err} at {far} {beside}");
+        }
+    }
 }

@@ -24,9 +24,12 @@ pub struct Evidence<'a> {
     pub(super) seen: Seen,
 }
 
-/// Lines that one task looks at, and that are looked at before the next are begun.
-const BATCH: usize = 64;
-const ROUND: usize = 16 * BATCH;
+/// Lines that are looked at before the next are begun: at first, and at most, by so many tasks; in between so many that a round
+/// takes one in so many of the steps, by what the lines before have taken.
+const FIRST: usize = 4;
+const ROUND: usize = 1024;
+const TASKS: usize = 16;
+const ROUNDS: u64 = 16;
 /// Nodes of the expression that are evaluated, at most, before no more lines are looked at: a line that crosses much evaluates
 /// it for each stretch.
 const STEPS: u64 = 1 << 30;
@@ -80,15 +83,19 @@ impl<'a> Caster<'a> {
             let steps = witness.steps;
             (witness.finish(), steps)
         };
-        let (mut seen, mut spent) = (Seen::default(), 0);
-        for round in lines.chunks(ROUND) {
+        let (mut seen, mut spent, mut done) = (Seen::default(), 0, 0);
+        while done < lines.len() {
             if steps < spent {
                 return (seen, false);
             }
-            let found: Vec<(Seen, u64)> = round.par_chunks(BATCH).map(look).collect();
+            let each = spent / done.max(1) as u64;
+            let next = if done == 0 { FIRST } else { (steps / ROUNDS / each.max(1)) as usize };
+            let round = &lines[done..][..next.clamp(FIRST, ROUND).min(lines.len() - done)];
+            let found: Vec<(Seen, u64)> = round.par_chunks(round.len().div_ceil(TASKS)).map(look).collect();
             for (more, steps) in found {
                 (seen, spent) = (seen.add(more), spent + steps);
             }
+            done += round.len();
         }
         (seen, true)
     }

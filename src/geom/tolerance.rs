@@ -27,6 +27,13 @@ pub fn cleanup(scale: f64) -> f64 {
     CLEANUP * EPS * scale
 }
 
+/// How far along a line a crossing in closed form may be off, world length, by [`cleanup`] across its face; `cosine` is that
+/// between line and normal. Where a line grazes a round face no larger than `scale` both its crossings lie within the root
+/// of twice the product of that and the scale; so small cosines count as 2^-24.
+pub fn rounded(scale: f64, cosine: f64) -> f64 {
+    cleanup(scale) / cosine.abs().max((CLEANUP * EPS).sqrt())
+}
+
 /// A length from here on has a fourth power, as discriminants have, that keeps all its digits, and so has one some tens of
 /// times smaller: 2^-250, where 2^-1022 is the smallest such number.
 pub const SMALLEST: f64 = f64::from_bits((1023 - 250) << 52);

@@ -195,6 +195,14 @@ impl World {
         leaf.solid.color(local_from_world.transform_point3(point), &mut scratch.solid)
     }
 
+    /// Half the width, in `t`, of what a crossing at a surface may be off by: what its solid knows, and roundings
+    /// ([`tolerance::rounded`]).
+    pub fn error(&self, ray: &Ray, hit: &Hit, surface: &Surface) -> f64 {
+        let scale = ray.origin.length().max(surface.point.length()).max(self.part(hit).leaf.scale());
+        let length = ray.dir.length();
+        hit.boundary.crossing.err + tolerance::rounded(scale, surface.normal.dot(ray.dir) / length) / length
+    }
+
     /// The name of a boundary's leaf, as the scene calls it.
     pub fn leaf_name(&self, hit: &Hit) -> &str {
         &self.part(hit).leaf.name

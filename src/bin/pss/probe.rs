@@ -139,7 +139,7 @@ impl<'a> End<'a> {
         let surface = world.surface(ray, hit);
         End {
             t: hit.boundary.t,
-            err: hit.boundary.crossing.err,
+            err: world.error(ray, hit, &surface),
             point: surface.point.to_array(),
             normal: surface.normal.to_array(),
             leaf: world.leaf_name(hit),
