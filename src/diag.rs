@@ -15,6 +15,8 @@ pub enum Severity {
 /// Which kind of failure an error is: it chooses the exit code.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Fault {
+    /// What is stated does not hold (1).
+    Unmet,
     /// The command line is wrong (2).
     Usage,
     /// A scene, a cloud or a value in them is wrong (65).
@@ -35,6 +37,7 @@ impl Fault {
     /// The process exit code (`sysexits.h`).
     pub fn exit_code(self) -> u8 {
         match self {
+            Fault::Unmet => 1,
             Fault::Usage => 2,
             Fault::Input => 65,
             Fault::Missing => 66,

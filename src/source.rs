@@ -75,6 +75,12 @@ impl SourceMap {
         &self.file(span.file).text[span.start as usize..span.end as usize]
     }
 
+    /// Where a span begins, as `file:line:column`.
+    pub fn place(&self, span: Span) -> String {
+        let LineColumn { line, column } = self.locate(span.file, span.start);
+        format!("{}:{line}:{column}", self.file(span.file).name)
+    }
+
     /// Where a byte lies.
     pub fn locate(&self, file: FileId, byte: u32) -> LineColumn {
         let text = &self.file(file).text;

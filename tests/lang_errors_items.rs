@@ -42,56 +42,26 @@ error[E0503]: `a` is outside of what it allows
 }
 
 says! {
-    what_is_not_there_yet_says_so: "fn f(x) = x * 2\nimport \"a.pss\" as b\nprint 3\nexpect 1 < 2\nlet a = for i in 0..3 { i }\nlet b = if true { 1 } else { 2 }\n@ghost draw sphere(r: 1)\nlet c = volume(sphere(r: 1))\n",
+    what_is_not_there_yet_says_so: "@ghost draw sphere(r: 1)\n",
     r#"
-error[E0702]: `fn` is not supported yet
- --> scene.pss:1:1
-  |
-1 | fn f(x) = x * 2
-  | ^^ understood, but not carried out
-  = help: write the scene without it, or wait for a later version
-
-error[E0702]: `import` is not supported yet
- --> scene.pss:2:1
-  |
-2 | import "a.pss" as b
-  | ^^^^^^ understood, but not carried out
-  = help: write the scene without it, or wait for a later version
-
-error[E0702]: `print` is not supported yet
- --> scene.pss:3:1
-  |
-3 | print 3
-  | ^^^^^ understood, but not carried out
-  = help: write the scene without it, or wait for a later version
-
-error[E0702]: `for` is not supported yet
- --> scene.pss:5:9
-  |
-5 | let a = for i in 0..3 { i }
-  |         ^^^^^^^^^^^^^^^^^^^ understood, but not carried out
-  = help: write the scene without it, or wait for a later version
-
-error[E0702]: `if` is not supported yet
- --> scene.pss:6:9
-  |
-6 | let b = if true { 1 } else { 2 }
-  |         ^^^^^^^^^^^^^^^^^^^^^^^^ understood, but not carried out
-  = help: write the scene without it, or wait for a later version
-
 error[E0702]: `@ghost` is not supported yet
- --> scene.pss:7:2
+ --> scene.pss:1:2
   |
-7 | @ghost draw sphere(r: 1)
+1 | @ghost draw sphere(r: 1)
   |  ^^^^^ understood, but not carried out
   = help: write the scene without it, or wait for a later version
+"#
+}
 
-error[E0702]: `volume` is not supported yet
- --> scene.pss:8:9
+says! {
+    without_files_and_geometry_nothing_is_imported_or_measured: "let c = volume(sphere(r: 1))\n",
+    r#"
+error[E0708]: `volume` cannot be asked here
+ --> scene.pss:1:9
   |
-8 | let c = volume(sphere(r: 1))
-  |         ^^^^^^ understood, but not carried out
-  = help: write the scene without it, or wait for a later version
+1 | let c = volume(sphere(r: 1))
+  |         ^^^^^^^^^^^^^^^^^^^^ no geometry
+  = help: ask in the scene itself
 "#
 }
 

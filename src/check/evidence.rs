@@ -57,6 +57,13 @@ impl<'a> Evidence<'a> {
     }
 }
 
+impl Evidence<'_> {
+    /// Whether no line was inside of anything.
+    pub fn is_nothing(&self) -> bool {
+        self.seen.parts.is_empty()
+    }
+}
+
 /// Lines in an order without a pattern: the first of them are a fair choice.
 fn scattered(lines: Vec<Ray>) -> Vec<Ray> {
     let mut numbered: Vec<(f64, usize, Ray)> =

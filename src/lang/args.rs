@@ -1,42 +1,45 @@
 //! Which argument is which: by place, by name, missing, unknown, given twice. What a value must be is left
 //! to `check` and to the builtins themselves.
 
+use std::cell::Cell;
+
 use super::ast::{Args, Expr};
+use super::queries::Geometry;
 use super::value::{Eval, Located};
 use crate::diag::{Diagnostic, nearest};
-use crate::scene::{Decl, Kind};
+use crate::scene::{Call, Decl, Kind};
 use crate::source::{SourceMap, Span};
 
 /// An argument that may be given.
 #[derive(Clone, Copy, Debug)]
-pub struct Formal {
+pub struct Formal<'a> {
     /// The name before the colon.
-    pub name: &'static str,
+    pub name: &'a str,
     /// Whether it may be given by place.
     pub by_place: bool,
     /// Whether the call is wrong without it.
     pub required: bool,
 }
 
-impl Formal {
+impl<'a> Formal<'a> {
     /// A needed argument, by place or by name.
-    pub const fn place(name: &'static str) -> Formal {
+    pub const fn place(name: &'a str) -> Formal<'a> {
         Formal { name, by_place: true, required: true }
     }
 
     /// A needed argument, by name.
-    pub const fn named(name: &'static str) -> Formal {
+    pub const fn named(name: &'a str) -> Formal<'a> {
         Formal { name, by_place: false, required: true }
     }
 
     /// The same, but it may be left out.
-    pub const fn optional(self) -> Formal {
+    pub const fn optional(self) -> Formal<'a> {
         Formal { required: false, ..self }
     }
 }
 
 /// The formal arguments of a declaration.
-pub fn formals(decl: &Decl) -> Vec<Formal> {
+pub fn formals(decl: &Decl) -> Vec<Formal<'_>> {
     decl.params.iter().map(|p| Formal { name: p.name, by_place: p.by_place, required: p.required }).collect()
 }
 
@@ -54,7 +57,7 @@ pub struct Callee<'a> {
     /// The place of the whole call.
     pub at: Span,
     /// What it takes.
-    pub formals: &'a [Formal],
+    pub formals: &'a [Formal<'a>],
 }
 
 impl<'a> Callee<'a> {
@@ -127,6 +130,12 @@ pub struct Bound<'a> {
     pub values: Vec<Option<Located>>,
     /// The texts, for hints.
     pub sources: &'a SourceMap,
+    /// Who measures shapes.
+    pub geometry: Option<&'a dyn Geometry>,
+    /// The materials made so far.
+    pub materials: &'a [Call],
+    /// The widest bar of what was measured.
+    pub bars: &'a Cell<f64>,
 }
 
 impl Bound<'_> {

@@ -1,10 +1,14 @@
 //! The tree of a scene file as it was written, every node with its place. What the names in it mean is left
 //! to `eval`. Chains of operators and of methods are flat, so the tree is no deeper than the text nests.
 
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
 use crate::source::Span;
 
 /// A word with its place.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Word {
     /// The letters.
     pub text: String,
@@ -13,7 +17,7 @@ pub struct Word {
 }
 
 /// An item of a file.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Item {
     /// What it is.
     pub kind: ItemKind,
@@ -22,10 +26,18 @@ pub struct Item {
 }
 
 /// Kinds of item.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub enum ItemKind {
     /// `let name = expr`.
     Let(Word, Expr),
+    /// `fn name(params) = expr`.
+    Function(Word, Arc<Function>),
+    /// `import "file" [as name]`.
+    Import(Import),
+    /// `print expr`.
+    Print(Expr),
+    /// `expect expr`.
+    Expect(Box<Expect>),
     /// `param name: type = default in allowed "doc"`.
     Param(Box<Param>),
     /// `material name(...)`.
@@ -40,12 +52,52 @@ pub enum ItemKind {
     Units(Word),
     /// `@word draw expr`.
     Draw(Vec<Word>, Expr),
-    /// An item that is understood but not carried out yet: its keyword.
-    Later(&'static str),
+}
+
+/// A function as it was written: what it takes, and what it gives.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Function {
+    /// Its parameters, names all different.
+    pub params: Vec<Formal>,
+    /// What it is worth.
+    pub body: Expr,
+}
+
+/// A parameter of a function.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Formal {
+    /// Its name.
+    pub name: Word,
+    /// The type, if it was written.
+    pub kind: Option<Word>,
+    /// What it is where no argument is given.
+    pub default: Option<Expr>,
+}
+
+/// A file whose names are used.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Import {
+    /// The file, as it was written.
+    pub path: String,
+    /// The place of the string.
+    pub at: Span,
+    /// The name space.
+    pub space: Option<Word>,
+}
+
+/// What must hold.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Expect {
+    /// A condition, or what is compared.
+    pub left: Expr,
+    /// What it shall be: the right side, and whether nearly.
+    pub right: Option<(bool, Expr)>,
+    /// By how much it may differ, and whether that is in percent.
+    pub within: Option<(Expr, bool)>,
 }
 
 /// A parameter of the scene.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Param {
     /// The name that `-D` sets.
     pub name: Word,
@@ -58,7 +110,7 @@ pub struct Param {
 }
 
 /// The parenthesised arguments of a call.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Args {
     /// The arguments, in the order written.
     pub list: Vec<Arg>,
@@ -67,7 +119,7 @@ pub struct Args {
 }
 
 /// One argument.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Arg {
     /// The word before the colon.
     pub name: Option<Word>,
@@ -76,7 +128,7 @@ pub struct Arg {
 }
 
 /// An expression.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Expr {
     /// What it is.
     pub kind: ExprKind,
@@ -85,7 +137,7 @@ pub struct Expr {
 }
 
 /// Kinds of expression.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub enum ExprKind {
     /// A number and the unit that touches it.
     Number(f64, Option<Unit>),
@@ -107,12 +159,18 @@ pub enum ExprKind {
     Prefix(PrefixOp, Span, Box<Expr>),
     /// Operators of one precedence, left to right, with the places of their signs.
     Infix(Box<Expr>, Vec<(InfixOp, Span, Expr)>),
-    /// An expression that is understood but not carried out yet: its keyword or sign.
-    Later(&'static str),
+    /// `if a { b } else { c }`.
+    If(Box<[Expr; 3]>),
+    /// `for a in b, c in d { e }`; names all different.
+    For(Vec<(Word, Expr)>, Box<Expr>),
+    /// `fn(a) => b`.
+    Function(Arc<Function>),
+    /// `{ let a = b  c }`; names all different.
+    Block(Vec<(Word, Expr)>, Box<Expr>),
 }
 
 /// What follows an atom.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub enum Step {
     /// `(...)`.
     Call(Args),
@@ -125,7 +183,7 @@ pub enum Step {
 }
 
 /// Signs before an operand.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub enum PrefixOp {
     Negate,
@@ -134,7 +192,7 @@ pub enum PrefixOp {
 }
 
 /// Signs between two operands.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub enum InfixOp {
     Or,
@@ -213,7 +271,7 @@ impl InfixOp {
 }
 
 /// Units a number can carry.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
 pub enum Unit {
     /// A length: so many micrometres.
     Length(f64),
@@ -222,7 +280,7 @@ pub enum Unit {
 }
 
 /// Units of angles.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub enum AngleUnit {
     Degree,

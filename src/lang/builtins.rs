@@ -3,7 +3,7 @@
 
 use super::args::{Bound, Formal};
 use super::value::{Eval, Val};
-use super::{maths, methods, sets};
+use super::{lists, maths, methods, queries, sets};
 
 /// A function or a method.
 #[derive(Clone, Copy, Debug)]
@@ -11,7 +11,7 @@ pub struct Builtin {
     /// The word.
     pub name: &'static str,
     /// What it takes.
-    pub formals: &'static [Formal],
+    pub formals: &'static [Formal<'static>],
     /// One sentence.
     pub doc: &'static str,
     /// What it does.
@@ -29,9 +29,5 @@ pub const METHODS: &[Builtin] = methods::TABLE;
 
 /// All functions.
 pub fn functions() -> impl Iterator<Item = &'static Builtin> {
-    sets::TABLE.iter().chain(maths::TABLE)
+    sets::TABLE.iter().chain(maths::TABLE).chain(lists::TABLE).chain(queries::TABLE)
 }
-
-/// Words of the language that are not carried out yet.
-pub const LATER: &[&str] =
-    &["bounds", "inside", "volume", "area", "centroid", "empty", "solid", "raycast", "rand", "count"];

@@ -1,7 +1,7 @@
 //! Parameters: their types, what they allow, and values given by `-D name=value`.
 
 use super::args::quoted;
-use super::ast::{Expr, ExprKind, Param, PrefixOp};
+use super::ast::{Expr, ExprKind, Param, PrefixOp, Word};
 use super::eval::Machine;
 use super::value::{Eval, Located, Stop, Val};
 use super::{arithmetic, parse, span, split};
@@ -49,10 +49,7 @@ const TYPES: [&str; 8] = ["number", "int", "length", "angle", "color", "vector",
 pub fn value(machine: &mut Machine, param: &Param, defines: &[Define]) -> Eval<Val> {
     let default = machine.located(&param.default)?;
     let kind = match &param.kind {
-        Some(word) => match TYPES.iter().find(|t| **t == word.text) {
-            Some(known) => known,
-            None => return Err(unknown_type(&word.text).at(word.at, "unknown type").into()),
-        },
+        Some(word) => type_named(word)?,
         None => type_of(&default)?,
     };
     let name = param.name.text.as_str();
@@ -76,6 +73,18 @@ pub fn value(machine: &mut Machine, param: &Param, defines: &[Define]) -> Eval<V
         Stop::Told(error) => Stop::Told(Box::new(error.fault(Fault::Usage))),
         Stop::Quiet => Stop::Quiet,
     })
+}
+
+fn type_named(word: &Word) -> Eval<&'static str> {
+    match TYPES.iter().find(|t| **t == word.text) {
+        Some(known) => Ok(known),
+        None => Err(unknown_type(&word.text).at(word.at, "unknown type").into()),
+    }
+}
+
+/// Refuses a value that is not of a type, as it was written; `written` is how the value was.
+pub fn typed_as(given: &Located, name: &str, kind: &Word, written: &str) -> Eval<()> {
+    typed(given, name, type_named(kind)?, written)
 }
 
 fn unknown_type(word: &str) -> Diagnostic {

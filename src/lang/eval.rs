@@ -1,16 +1,25 @@
 //! Expressions to values. Names are looked up here; operators are left to `arithmetic` and `sets`, calls of
 //! declared things to `check`, builtins to their table, items to `items`.
 
+use std::cell::Cell;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use super::args::{Bound, Callee};
-use super::ast::{Args, Expr, ExprKind, InfixOp, PrefixOp, Step, Unit, Word};
+use super::ast::{Args, Expr, ExprKind, Function, InfixOp, PrefixOp, Step, Unit, Word};
 use super::builtins::{self, Builtin};
+use super::flow::{range_count, range_value};
+use super::functions::Closure;
+use super::queries::Geometry;
+use super::scope::Locals;
 use super::value::{Eval, List, Located, Stop, Val};
 use super::{arithmetic, check, sets, units};
 use crate::diag::{Diagnostic, nearest};
 use crate::scene::{Call, Catalog, Group, MaterialId, Shape, ShapeKind};
 use crate::source::{SourceMap, Span};
+
+/// Calls and turns of loops, at most.
+const MAX_STEPS: usize = 5_000_000;
 
 /// What an evaluation knows and gathers.
 pub struct Machine<'a> {
@@ -20,14 +29,26 @@ pub struct Machine<'a> {
     pub sources: &'a SourceMap,
     /// Micrometres in a scene unit.
     pub unit: f64,
-    /// The names of the file; `None` for one that failed or is not evaluated yet.
-    pub names: HashMap<String, Option<Val>>,
+    /// The names of each file; `None` for one that failed or is not evaluated yet.
+    pub names: Vec<HashMap<String, Option<Val>>>,
+    /// The file being evaluated.
+    pub module: usize,
+    /// The names around the expression being evaluated.
+    pub locals: Locals,
+    /// Calls of functions that are open.
+    pub calls: usize,
+    /// Calls and turns of loops so far.
+    pub steps: usize,
     /// The name of the `let` being evaluated.
     pub binding: Option<String>,
     /// Materials made so far.
     pub materials: Vec<Call>,
     /// Warnings so far.
     pub warnings: Vec<Diagnostic>,
+    /// Who measures shapes.
+    pub geometry: Option<&'a dyn Geometry>,
+    /// The widest bar of what was measured since it was last set to zero.
+    pub bars: Cell<f64>,
 }
 
 impl Machine<'_> {
@@ -40,6 +61,49 @@ impl Machine<'_> {
     pub fn add_material(&mut self, call: Call) -> Val {
         self.materials.push(call);
         Val::Material(MaterialId(self.materials.len() as u32 - 1))
+    }
+
+    /// Counts a call or a turn of a loop.
+    pub fn step(&mut self, at: Span) -> Eval<()> {
+        self.steps += 1;
+        if self.steps <= MAX_STEPS {
+            return Ok(());
+        }
+        Err(Diagnostic::error(
+            "E0709",
+            format!("the scene takes more than {MAX_STEPS} calls and turns of loops"),
+        )
+        .at(at, "here it is given up")
+        .help("does a loop or a recursion come to an end?")
+        .into())
+    }
+
+    /// Warns of a name that is one of the language.
+    pub fn hides_builtin(&mut self, name: &Word) {
+        let word = name.text.as_str();
+        let constant = builtins::CONSTANTS.iter().any(|(n, _, _)| *n == word);
+        if constant || self.callable().any(|known| known == word) {
+            let warning = Diagnostic::warning("W0201", format!("`{word}` hides what the language calls so"))
+                .at(name.at, "defined here")
+                .help("take another name");
+            // A block may be evaluated many times.
+            if !self.warnings.iter().any(|w| w.labels.first().is_some_and(|l| l.span == name.at)) {
+                self.warnings.push(warning);
+            }
+        }
+    }
+
+    /// The value of what a name is given; shapes made there are called so.
+    pub fn named(&mut self, name: &str, expr: &Expr) -> Eval<Val> {
+        let outside = self.binding.replace(name.to_owned());
+        let value = self.value(expr);
+        self.binding = outside;
+        Ok(match value? {
+            Val::Function(closure) if closure.name.is_none() => {
+                Val::Function(Arc::new(Closure { name: Some(name.into()), ..(*closure).clone() }))
+            }
+            value => value,
+        })
     }
 
     /// The value of an expression with its place.
@@ -65,15 +129,35 @@ impl Machine<'_> {
             ExprKind::Steps(base, steps) => self.steps(base, steps),
             ExprKind::Prefix(op, sign, operand) => self.prefix(*op, *sign, operand, expr.at),
             ExprKind::Infix(first, rest) => self.infix(first, rest, expr.at),
-            ExprKind::Later(what) => Err(later(what, expr.at).into()),
+            ExprKind::If(parts) => self.choose(parts),
+            ExprKind::For(loops, body) => self.repeat(loops, body, expr.at),
+            ExprKind::Block(bindings, body) => self.block(bindings, body),
+            ExprKind::Function(function) => Ok(self.function(function, None)),
         }
     }
 
+    /// A function of the names around it.
+    pub fn function(&self, function: &Arc<Function>, name: Option<&str>) -> Val {
+        Val::Function(Arc::new(Closure {
+            function: function.clone(),
+            name: name.map(Into::into),
+            locals: self.locals.clone(),
+            module: self.module,
+        }))
+    }
+
+    /// What the scene itself calls so.
+    pub fn defined(&self, name: &str) -> Option<Eval<Val>> {
+        if let Some(value) = self.locals.get(name) {
+            return Some(Ok(value.clone()));
+        }
+        let known = self.names[self.module].get(name)?;
+        Some(known.clone().ok_or(Stop::Quiet))
+    }
+
     fn name(&self, name: &str, at: Span) -> Eval<Val> {
-        match self.names.get(name) {
-            Some(Some(value)) => return Ok(value.clone()),
-            Some(None) => return Err(Stop::Quiet),
-            None => {}
+        if let Some(value) = self.defined(name) {
+            return value;
         }
         if let Some((_, value, _)) = builtins::CONSTANTS.iter().find(|(n, _, _)| *n == name) {
             return Ok(Val::Number(*value));
@@ -100,7 +184,8 @@ impl Machine<'_> {
     }
 
     fn unknown(&self, name: &str, at: Span) -> Diagnostic {
-        let mut known: Vec<&str> = self.names.keys().map(String::as_str).collect();
+        let mut known: Vec<&str> = self.names[self.module].keys().map(String::as_str).collect();
+        known.extend(self.locals.names());
         known.sort_unstable();
         self.callable().for_each(|word| known.push(word));
         builtins::CONSTANTS.iter().for_each(|(word, _, _)| known.push(word));
@@ -115,7 +200,7 @@ impl Machine<'_> {
         let mut rest = steps.iter();
         let mut at = base.at;
         let mut value = match (&base.kind, steps.first()) {
-            (ExprKind::Name(name), Some(Step::Call(args))) if !self.names.contains_key(name) => {
+            (ExprKind::Name(name), Some(Step::Call(args))) if self.defined(name).is_none() => {
                 rest.next();
                 at = at.to(args.at);
                 self.call(name, base.at, args)?
@@ -125,12 +210,27 @@ impl Machine<'_> {
         for step in rest {
             let on = Located { value, at };
             value = match step {
-                Step::Call(args) => return Err(self.not_a_function(base, &on, args.at)),
+                Step::Call(args) => {
+                    let Val::Function(closure) = &on.value else {
+                        return Err(self.not_a_function(base, &on, args.at));
+                    };
+                    at = at.to(args.at);
+                    self.call_function(closure, args, at)?
+                }
                 Step::Method(word, args) => {
                     at = at.to(args.at);
-                    self.method(on, word, args)?
+                    match member(&on, &word.text) {
+                        Some(Val::Function(closure)) => self.call_function(&closure, args, at)?,
+                        _ => self.method(on, word, args)?,
+                    }
                 }
-                Step::Member(word) => return Err(no_member(&on, word).into()),
+                Step::Member(word) => match member(&on, &word.text) {
+                    Some(value) => {
+                        at = at.to(word.at);
+                        value
+                    }
+                    None => return Err(no_member(&on, word).into()),
+                },
                 Step::Index(index, place) => {
                     at = at.to(*place);
                     let index = self.located(index)?;
@@ -168,9 +268,6 @@ impl Machine<'_> {
         if let Some(builtin) = builtins::functions().find(|b| b.name == word) {
             return self.builtin(builtin, None, args, at);
         }
-        if builtins::LATER.contains(&word) {
-            return Err(later(word, word_at).into());
-        }
         if let Some(method) = builtins::METHODS.iter().find(|b| b.name == word) {
             return Err(Diagnostic::error("E0401", format!("`{word}` is a method"))
                 .at(word_at, "not a function")
@@ -203,7 +300,15 @@ impl Machine<'_> {
         let exprs = callee.bind(args, "")?;
         let values =
             exprs.iter().map(|e| e.map(|e| self.located(e)).transpose()).collect::<Eval<Vec<_>>>()?;
-        let value = (builtin.call)(&Bound { callee, receiver, values, sources: self.sources })?;
+        let value = (builtin.call)(&Bound {
+            callee,
+            receiver,
+            values,
+            sources: self.sources,
+            geometry: self.geometry,
+            materials: &self.materials,
+            bars: &self.bars,
+        })?;
         arithmetic::finite(&value, builtin.name, at)?;
         Ok(value)
     }
@@ -229,6 +334,11 @@ impl Machine<'_> {
 
     fn infix(&mut self, first: &Expr, rest: &[(InfixOp, Span, Expr)], at: Span) -> Eval<Val> {
         let mut left = self.located(first)?;
+        let decides = |left: &Located, op: InfixOp| match (op, &left.value) {
+            (InfixOp::Or, Val::Bool(b)) => *b,
+            (InfixOp::And, Val::Bool(b)) => !*b,
+            _ => false,
+        };
         if rest[0].0.level() == 3 || matches!(left.value, Val::Shape(_)) && rest[0].0.level() > 3 {
             let mut operands = Vec::with_capacity(rest.len());
             for (op, sign, operand) in rest {
@@ -237,11 +347,22 @@ impl Machine<'_> {
             return sets::chain(left, operands, at);
         }
         for (op, sign, operand) in rest {
+            // What the left side decides is not asked of the right: it may hold only where the left does.
+            if decides(&left, *op) {
+                continue;
+            }
             let right = self.located(operand)?;
             if matches!(right.value, Val::Shape(_)) && op.level() > 3 {
                 return Err(sets::wrong_sign(*op, *sign, &left, &right).into());
             }
             let at = left.at.to(right.at);
+            if let (InfixOp::Equal | InfixOp::Unequal, Val::Shape(a), Val::Shape(b)) =
+                (op, &left.value, &right.value)
+            {
+                let same = self.same_solid(a, b, at)?;
+                left = Located { value: Val::Bool(same == (*op == InfixOp::Equal)), at };
+                continue;
+            }
             left = Located { value: arithmetic::infix(*op, &left, &right, *sign)?, at };
         }
         Ok(left.value)
@@ -250,8 +371,14 @@ impl Machine<'_> {
 
 fn no_member(on: &Located, word: &Word) -> Diagnostic {
     let name = word.text.as_str();
-    if builtins::LATER.contains(&name) {
-        return later(name, word.at);
+    if let Val::Record(record) = &on.value {
+        let names: Vec<String> = record.names().map(|n| format!("`.{n}`")).collect();
+        let error = Diagnostic::error("E0408", format!("{} has no `{name}`", on.value.kind()));
+        let error = error.at(word.at, "unknown part");
+        return match nearest(name, record.names()) {
+            Some(known) => error.help(format!("did you mean `.{known}`?")),
+            None => error.help(format!("it has {}", names.join(" "))),
+        };
     }
     if builtins::METHODS.iter().any(|b| b.name == name) {
         return Diagnostic::error("E0410", format!("`.{name}` is called with arguments"))
@@ -270,16 +397,35 @@ fn no_member(on: &Located, word: &Word) -> Diagnostic {
     }
 }
 
+/// A part of a vector or a record, or a name of a file.
+fn member(on: &Located, word: &str) -> Option<Val> {
+    match &on.value {
+        Val::Record(record) => record.get(word).cloned(),
+        Val::List(_) => {
+            let axis = ["x", "y", "z", "w"].iter().position(|axis| *axis == word)?;
+            on.value.numbers()?.get(axis).map(|x| Val::Number(*x))
+        }
+        _ => None,
+    }
+}
+
 fn element(on: &Located, index: &Located) -> Eval<Val> {
-    let Val::List(list) = &on.value else {
-        let told = format!("{} has no elements", on.value.kind());
-        let error = Diagnostic::error("E0501", told).at(on.at, on.value.kind());
-        return Err(error.help("only lists have elements: `list[0]`").into());
+    let count = match &on.value {
+        Val::List(list) => list.items.len() as u64,
+        Val::Range(lo, hi, _) => range_count(*lo, *hi),
+        value => {
+            let told = format!("{} has no elements", value.kind());
+            let error = Diagnostic::error("E0501", told).at(on.at, value.kind());
+            return Err(error.help("only lists have elements: `list[0]`").into());
+        }
     };
     let i = index.number("index")?;
-    let count = list.items.len();
     if i.fract() == 0.0 && i >= 0.0 && i < count as f64 {
-        return Ok(list.items[i as usize].value.clone());
+        return Ok(match &on.value {
+            Val::List(list) => list.items[i as usize].value.clone(),
+            Val::Range(lo, _, of_angles) => range_value(*lo, i as u64, *of_angles),
+            _ => Val::Number(i),
+        });
     }
     let help = match count {
         0 => "the list is empty".to_owned(),

@@ -48,8 +48,10 @@ pub struct Placed {
 
 /// A formula being read.
 pub struct Reader<'m, 'a> {
-    machine: &'m mut Machine<'a>,
+    pub(super) machine: &'m mut Machine<'a>,
     steps: Builder,
+    /// What depends on the coordinates: their names, and in a function that is called its parameters; the innermost last.
+    pub(super) symbols: Vec<(String, Term)>,
 }
 
 /// Reads a comparison whose sides may use x, y and z.
@@ -66,7 +68,11 @@ pub fn read(machine: &mut Machine, expr: &Expr) -> Eval<Formula> {
         }
         _ => return Err(refuse(expr, "is not a condition", "expected a comparison").into()),
     };
-    let mut reader = Reader { machine, steps: Builder::default() };
+    let mut reader = Reader { machine, steps: Builder::default(), symbols: Vec::new() };
+    for (axis, name) in (0..).zip(["x", "y", "z"]) {
+        let step = reader.add(Step::Coordinate(axis), expr.at)?;
+        reader.symbols.push((name.to_owned(), Term::Number(step)));
+    }
     let (a, b) = (reader.placed(left)?, reader.placed(right)?);
     let (low, high, closed) = match op {
         InfixOp::Below | InfixOp::AtMost => (a, b, op == InfixOp::AtMost),
@@ -106,13 +112,23 @@ impl Reader<'_, '_> {
         Ok(Placed { term: self.term(expr)?, at: expr.at })
     }
 
-    fn term(&mut self, expr: &Expr) -> Eval<Term> {
+    /// Whether an expression depends on the coordinates.
+    pub fn is_symbolic(&self, expr: &Expr) -> bool {
+        let names: Vec<&str> = self.symbols.iter().map(|(name, _)| name.as_str()).collect();
+        order::uses(expr, &names)
+    }
+
+    /// The steps of an expression.
+    pub fn term(&mut self, expr: &Expr) -> Eval<Term> {
         match &expr.kind {
-            ExprKind::Name(n) if ["x", "y", "z"].contains(&n.as_str()) => {
-                self.add(Step::Coordinate(n.as_bytes()[0] - b'x'), expr.at).map(Term::Number)
+            ExprKind::Name(n) if self.symbols.iter().any(|(name, _)| name == n) => {
+                let symbol = self.symbols.iter().rfind(|(name, _)| name == n);
+                symbol.map(|(_, term)| term.clone()).ok_or_else(|| stranger(expr.at).into())
             }
-            _ if !order::uses(expr, &["x", "y", "z"]) => self.constant(expr),
+            _ if !self.is_symbolic(expr) => self.constant(expr),
             ExprKind::Paren(inside) => self.term(inside),
+            ExprKind::If(parts) => self.choose(parts),
+            ExprKind::Block(bindings, body) => self.block(bindings, body),
             ExprKind::Prefix(PrefixOp::Negate, _, operand) => {
                 let term = self.term(operand)?;
                 self.each(term, |r, a| r.one(One::Negate, a, expr.at))
@@ -152,7 +168,7 @@ impl Reader<'_, '_> {
     fn indexed(&mut self, term: Term, steps: &[Follows], at: Span) -> Eval<Term> {
         match (term, steps) {
             (term, []) => Ok(term),
-            (Term::Vector(_), [Follows::Index(index, _)]) if order::uses(index, &["x", "y", "z"]) => {
+            (Term::Vector(_), [Follows::Index(index, _)]) if self.is_symbolic(index) => {
                 let error = Diagnostic::error("E0511", "an index of a formula is the same everywhere");
                 Err(error.at(index.at, "depends on x, y or z").help("write a number").into())
             }
@@ -188,6 +204,19 @@ impl Reader<'_, '_> {
     }
 
     fn call(&mut self, word: &str, word_at: Span, args: &Args) -> Eval<Term> {
+        if let Some(known) = self.machine.defined(word) {
+            return match known? {
+                Val::Function(closure) => self.call_function(&closure, args, word_at.to(args.at)),
+                value => {
+                    let kind = value.kind();
+                    let error = Diagnostic::error("E0410", format!("{kind} cannot be called"));
+                    Err(error
+                        .at(word_at, kind)
+                        .help("remove the arguments, or put an operator before the `(`")
+                        .into())
+                }
+            };
+        }
         let Some(function) = FUNCTIONS.iter().find(|f| f.name == word) else {
             let error = Diagnostic::error("E0511", format!("`{word}` is no function of a formula"));
             let error = error.at(word_at, "not known here");
@@ -349,7 +378,7 @@ impl Reader<'_, '_> {
     }
 }
 
-fn stranger(at: Span) -> Diagnostic {
+pub(super) fn stranger(at: Span) -> Diagnostic {
     Diagnostic::error("E0511", "this cannot stand in a formula of x, y and z")
         .at(at, "not a number")
         .help("a formula is made of numbers, operators and functions of numbers")

@@ -13,7 +13,7 @@ pub struct Function {
     /// The word.
     pub name: &'static str,
     /// What it takes.
-    pub formals: &'static [Formal],
+    pub formals: &'static [Formal<'static>],
     /// Adds its steps; all its arguments are given.
     pub call: fn(&mut Reader, &[Placed], Span) -> Eval<Term>,
 }
@@ -28,7 +28,7 @@ const MIX: &[Formal] = &[Formal::place("a"), Formal::place("b"), Formal::place("
 
 const fn line(
     name: &'static str,
-    formals: &'static [Formal],
+    formals: &'static [Formal<'static>],
     call: fn(&mut Reader, &[Placed], Span) -> Eval<Term>,
 ) -> Function {
     Function { name, formals, call }

@@ -1,61 +1,72 @@
 //! The items of a file to the [`Scene`]: definitions in the order they need each other, then cameras, lights,
 //! `render` and what is drawn.
 
+use std::cell::Cell;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use super::ast::{Arg, Args, Item, ItemKind, Word};
 use super::defines::{self, Define};
 use super::eval::{Machine, later};
-use super::value::{Eval, Located, Stop, Val};
-use super::{builtins, check, order, parse, sets, span, split, units};
+use super::modules::{self, Module};
+use super::scope::Locals;
+use super::value::{Eval, Located, Record, Stop, Val};
+use super::{Read, Reading, check, order, parse, print, sets, span, split, units};
 use crate::diag::{Diagnostic, nearest};
-use crate::scene::{Call, Catalog, Draw, Group, Kind, Named, Scene};
+use crate::scene::{Call, Draw, Group, Kind, Named, Scene};
 use crate::source::{FileId, SourceMap, Span};
 
 /// The largest file that is read.
 const MAX_BYTES: usize = 256 << 20;
 
 /// What a scene, or the failure to read it, comes to.
-pub type Outcome = Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>>;
+pub type Outcome = Result<Read, Vec<Diagnostic>>;
 
-/// Reads a file. Needs a deep stack: see [`super::read`].
-pub fn read(sources: &SourceMap, file: FileId, catalog: &Catalog, defines: &[Define]) -> Outcome {
-    let items = parsed(&sources.file(file).text, file)?;
+/// Reads a file and what it imports. Needs a deep stack: see [`super::read`].
+pub fn read(sources: &mut SourceMap, file: FileId, reading: &Reading, defines: &[Define]) -> Outcome {
+    let modules = modules::load(sources, file, reading)?;
     let mut errors = Vec::new();
-    let unit = scene_unit(&items, &mut errors);
-    errors.extend(order::redefinitions(items.iter().filter_map(order::defined)));
-    errors.extend(order::redefinitions(items.iter().filter_map(|i| label(i, false))));
-    errors.extend(order::redefinitions(items.iter().filter_map(|i| label(i, true))));
-    let params: Vec<&str> = items
+    let unit = scene_unit(modules.iter().rev().map(|m| &*m.items), &mut errors);
+    let root = modules.last().map_or(&[][..], |m| &m.items);
+    errors.extend(order::redefinitions(root.iter().filter_map(|i| label(i, false))));
+    errors.extend(order::redefinitions(root.iter().filter_map(|i| label(i, true))));
+    let params: Vec<&str> = root
         .iter()
         .filter_map(|i| if let ItemKind::Param(p) = &i.kind { Some(p.name.text.as_str()) } else { None })
         .collect();
     errors.extend(defines::unknown(defines, &params));
-    let names = items.iter().filter_map(|i| Some((order::defined(i)?.text.clone(), None)));
     let machine = Machine {
-        catalog,
+        catalog: reading.catalog,
         sources,
         unit,
-        names: HashMap::from_iter(names),
+        names: modules.iter().map(|_| HashMap::new()).collect(),
+        module: 0,
+        locals: Locals::default(),
+        calls: 0,
+        steps: 0,
         binding: None,
         materials: Vec::new(),
         warnings: Vec::new(),
+        geometry: reading.geometry,
+        bars: Cell::new(0.0),
     };
     let mut reader = Reader {
         machine,
         defines,
+        expects: reading.expects,
         scene: Scene::default(),
         only: Vec::new(),
         errors,
+        unmet: Vec::new(),
         render: None,
         quiet: None,
     };
-    reader.read(&items);
+    reader.read(&modules);
     reader.finish()
 }
 
 /// The items, or every mistake in their wording.
-fn parsed(text: &str, file: FileId) -> Result<Vec<Item>, Vec<Diagnostic>> {
+pub fn parsed(text: &str, file: FileId) -> Result<Vec<Item>, Vec<Diagnostic>> {
     if text.len() > MAX_BYTES {
         let told = format!("the scene is larger than {} MB", MAX_BYTES >> 20);
         return Err(vec![
@@ -81,7 +92,8 @@ fn parsed(text: &str, file: FileId) -> Result<Vec<Item>, Vec<Diagnostic>> {
     if errors.is_empty() { Ok(items) } else { Err(in_order(errors)) }
 }
 
-fn in_order(mut all: Vec<Diagnostic>) -> Vec<Diagnostic> {
+/// In the order of the text.
+pub fn in_order(mut all: Vec<Diagnostic>) -> Vec<Diagnostic> {
     all.sort_by_key(|d| d.labels.first().map(|l| (l.span.file, l.span.start)));
     all
 }
@@ -96,18 +108,22 @@ fn label(item: &Item, of_light: bool) -> Option<&Word> {
 }
 
 /// Micrometres in a unit of the scene.
-fn scene_unit(items: &[Item], errors: &mut Vec<Diagnostic>) -> f64 {
+fn scene_unit<'a>(files: impl Iterator<Item = &'a [Item]>, errors: &mut Vec<Diagnostic>) -> f64 {
     let mut first: Option<(f64, Span)> = None;
-    for item in items {
+    for item in files.flatten() {
         let ItemKind::Units(word) = &item.kind else { continue };
-        if let Some((_, at)) = first {
-            errors.push(twice("units", item.at, at));
-            continue;
-        }
         let names = units::LENGTHS.map(|(n, _)| n);
-        match units::LENGTHS.iter().find(|(n, _)| *n == word.text) {
-            Some((_, um)) => first = Some((*um, item.at)),
-            None => {
+        let known = units::LENGTHS.iter().find(|(n, _)| *n == word.text).map(|(_, um)| *um);
+        match (known, first) {
+            (_, Some((_, at))) if at.file == item.at.file => errors.push(twice("units", item.at, at)),
+            (Some(um), Some((other, at))) if um != other => {
+                let error = Diagnostic::error("E0513", "the files of a scene have different units");
+                let error = error.at(item.at, "here").at(at, "and here");
+                errors.push(error.help("write the lengths of one of them with their units: `12mm`"));
+            }
+            (Some(_), Some(_)) => {}
+            (Some(um), None) => first = Some((um, item.at)),
+            (None, _) => {
                 let error = Diagnostic::error("E0401", format!("`{}` is not a unit of length", word.text));
                 errors.push(error.at(word.at, "unknown unit").help(match nearest(&word.text, names) {
                     Some(near) if near.len() > 1 && word.text.len() > 1 => format!("did you mean `{near}`?"),
@@ -129,10 +145,14 @@ fn twice(what: &str, at: Span, first: Span) -> Diagnostic {
 struct Reader<'a> {
     machine: Machine<'a>,
     defines: &'a [Define],
+    /// Whether expectations are evaluated.
+    expects: bool,
     scene: Scene,
     /// Draws that carry `@only`.
     only: Vec<Draw>,
     errors: Vec<Diagnostic>,
+    /// Expectations that are not met.
+    unmet: Vec<Diagnostic>,
     /// The place of the `render` item.
     render: Option<Span>,
     /// The last item that failed because of another.
@@ -140,29 +160,63 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn read(&mut self, items: &[Item]) {
+    fn read(&mut self, modules: &[Module]) {
+        for (k, module) in modules.iter().enumerate() {
+            self.machine.module = k;
+            self.names(module, modules);
+            let root = k + 1 == modules.len();
+            for item in module.items.iter().filter(|item| root || matches!(item.kind, ItemKind::Print(_))) {
+                let done = self.item(item);
+                self.told(done, item.at);
+            }
+        }
+    }
+
+    /// The names of a file: those it imports, then its own.
+    fn names(&mut self, module: &Module, modules: &[Module]) {
         let catalog = self.machine.catalog;
         let takes_condition = |word: &str| {
             let decl = catalog.find(Group::Primitive, word);
             decl.is_some_and(|d| d.params.iter().any(|p| matches!(p.kind, Kind::HalfSpace | Kind::Condition)))
         };
+        let items = &module.items;
+        let known = module.imported().filter(|(import, _)| import.space.is_none());
+        let known = known.flat_map(|(_, from)| modules[from].items.iter().filter_map(order::defined));
+        let own = items.iter().filter_map(order::defined);
+        self.errors.extend(order::redefinitions(known.chain(own.clone())));
+        let k = self.machine.module;
+        for name in own {
+            self.machine.names[k].insert(name.text.clone(), None);
+        }
+        for (import, from) in module.imported() {
+            let names = self.machine.names[from].clone();
+            match &import.space {
+                Some(space) => {
+                    let fields = names.into_iter().filter_map(|(name, value)| Some((name, value?)));
+                    let mut fields: Vec<(String, Val)> = fields.collect();
+                    fields.sort_by(|a, b| a.0.cmp(&b.0));
+                    let record = Record { kind: "an imported file", fields };
+                    self.machine.names[k].insert(space.text.clone(), Some(Val::Record(Arc::new(record))));
+                }
+                None => self.machine.names[k].extend(names),
+            }
+        }
         let (sorted, cycles) = order::sorted(items, &takes_condition);
         self.errors.extend(cycles);
         for i in sorted {
+            if let ItemKind::Import(_) = items[i].kind {
+                continue;
+            }
             let value = self.definition(&items[i]);
             if let (Some(value), Some(name)) = (self.told(value, items[i].at), order::defined(&items[i])) {
-                self.hides_builtin(name);
-                self.machine.names.insert(name.text.clone(), Some(value));
+                self.machine.hides_builtin(name);
+                self.machine.names[k].insert(name.text.clone(), Some(value));
             }
-        }
-        for item in items {
-            let done = self.item(item);
-            self.told(done, item.at);
         }
     }
 
     fn finish(self) -> Outcome {
-        let Reader { machine, mut scene, only, errors, quiet, .. } = self;
+        let Reader { machine, mut scene, only, errors, quiet, unmet, .. } = self;
         let mut all = errors;
         if let (true, Some(at)) = (all.is_empty(), quiet) {
             let error =
@@ -179,7 +233,7 @@ impl Reader<'_> {
         if !only.is_empty() {
             scene.draws = only;
         }
-        Ok((scene, all))
+        Ok(Read { scene, warnings: all, unmet })
     }
 
     fn told<T>(&mut self, outcome: Eval<T>, at: Span) -> Option<T> {
@@ -193,12 +247,8 @@ impl Reader<'_> {
 
     fn definition(&mut self, item: &Item) -> Eval<Val> {
         match &item.kind {
-            ItemKind::Let(name, expr) => {
-                self.machine.binding = Some(name.text.clone());
-                let value = self.machine.value(expr);
-                self.machine.binding = None;
-                value
-            }
+            ItemKind::Let(name, expr) => self.machine.named(&name.text, expr),
+            ItemKind::Function(name, function) => Ok(self.machine.function(function, Some(&name.text))),
             ItemKind::Param(param) => defines::value(&mut self.machine, param, self.defines),
             ItemKind::Material(_, args) => self.material(args, item.at),
             _ => Err(Stop::Quiet),
@@ -226,11 +276,14 @@ impl Reader<'_> {
                 let value = self.machine.located(expr)?;
                 self.draw(attributes, &value)?;
             }
+            ItemKind::Print(expr) => {
+                let value = self.machine.value(expr)?;
+                self.scene.prints.push(print::text(&value));
+            }
             // Whoever renders or probes does not ask whether a scene keeps its promises.
-            ItemKind::Later("expect") => {}
-            ItemKind::Later(what) => {
-                let at = Span { end: item.at.start + what.len() as u32, ..item.at };
-                return Err(later(what, at).into());
+            ItemKind::Expect(expect) if self.expects => {
+                let unmet = self.machine.expect(expect, item.at)?;
+                self.unmet.extend(unmet);
             }
             _ => {}
         }
@@ -302,18 +355,5 @@ impl Reader<'_> {
             self.scene.draws.extend(draws);
         }
         Ok(())
-    }
-
-    fn hides_builtin(&mut self, name: &Word) {
-        let catalog = self.machine.catalog;
-        let word = name.text.as_str();
-        let hidden = catalog.find(Group::Primitive, word).is_some()
-            || catalog.find(Group::Material, word).is_some()
-            || builtins::functions().any(|b| b.name == word)
-            || builtins::CONSTANTS.iter().any(|(n, _, _)| *n == word);
-        if hidden {
-            let warning = Diagnostic::warning("W0201", format!("`{word}` hides what the language calls so"));
-            self.machine.warnings.push(warning.at(name.at, "defined here").help("take another name"));
-        }
     }
 }

@@ -18,7 +18,7 @@ const RGB: &[Formal] = &[Formal::place("r"), Formal::place("g"), Formal::place("
 
 const fn line(
     name: &'static str,
-    formals: &'static [Formal],
+    formals: &'static [Formal<'static>],
     doc: &'static str,
     call: fn(&Bound) -> Eval<Val>,
 ) -> Builtin {

@@ -3,24 +3,36 @@
 
 mod args;
 mod arithmetic;
-mod ast;
+pub mod ast;
 mod builtins;
 mod chains;
 mod check;
+pub mod codes;
 mod copies;
 mod defines;
 mod eval;
+mod expect;
+mod flow;
+mod format;
 mod formula;
+mod formula_calls;
 mod formula_functions;
+mod functions;
 mod half_space;
 mod items;
+mod lists;
 mod literals;
 mod maths;
 mod methods;
+mod modules;
 mod order;
 mod parse;
 mod placing;
+mod print;
+mod queries;
+pub mod reference;
 mod scan;
+mod scope;
 mod sets;
 mod split;
 mod syntax;
@@ -29,31 +41,73 @@ mod value;
 
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::{Path, PathBuf};
 
 use crate::diag::Diagnostic;
 use crate::scene::{Catalog, Scene};
 use crate::source::{FileId, SourceMap, Span};
 
+pub use queries::{Answer, Asked, Geometry, Measured, RayHit};
+
 /// Stack for the deepest nesting allowed, with room to spare; only what is used is ever touched.
 const STACK_BYTES: usize = 256 << 20;
 
-/// Reads the scene in `file`. `defines` are the `-D name=value` of the command line; their texts join
-/// `sources`, so that a complaint can show them. Warnings stand beside the scene; errors, with the warnings
-/// found on the way, stand in the order of the text.
+/// What reading a scene may use.
+#[derive(Clone, Copy)]
+pub struct Reading<'a> {
+    /// What can be called.
+    pub catalog: &'a Catalog,
+    /// The `-D name=value` of the command line.
+    pub defines: &'a [(String, String)],
+    /// Who reads what is imported; nothing is without.
+    pub files: Option<&'a dyn Files>,
+    /// Who measures shapes; they are not without.
+    pub geometry: Option<&'a dyn Geometry>,
+    /// Whether `expect` items are evaluated.
+    pub expects: bool,
+}
+
+/// Reads imported files.
+pub trait Files {
+    /// The path to open for a name written in a file of a folder; the error says that it may not be opened.
+    fn resolve(&self, written: &str, folder: &Path, at: Span) -> Result<PathBuf, Diagnostic>;
+    /// The text of a file.
+    fn read(&self, path: &Path, at: Span) -> Result<String, Diagnostic>;
+}
+
+/// A scene that was read.
+#[derive(Debug)]
+pub struct Read {
+    /// The scene.
+    pub scene: Scene,
+    /// In the order of the text.
+    pub warnings: Vec<Diagnostic>,
+    /// Expectations that are not met, where they were evaluated: errors.
+    pub unmet: Vec<Diagnostic>,
+}
+
+/// Reads the scene in `file`, which imports nothing and asks nothing of its shapes. `defines` are the `-D name=value` of the
+/// command line; their texts join `sources`, so that a complaint can show them. Warnings stand beside the scene; errors, with
+/// the warnings found on the way, stand in the order of the text.
 pub fn read(
     sources: &mut SourceMap,
     file: FileId,
     catalog: &Catalog,
     defines: &[(String, String)],
 ) -> Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>> {
-    let defines = defines::add(sources, defines);
-    let sources = &*sources;
+    let reading = Reading { catalog, defines, files: None, geometry: None, expects: false };
+    read_with(sources, file, &reading).map(|read| (read.scene, read.warnings))
+}
+
+/// The same with all that a scene may use. The texts of imported files join `sources`.
+pub fn read_with(sources: &mut SourceMap, file: FileId, reading: &Reading) -> Result<Read, Vec<Diagnostic>> {
+    let defines = defines::add(sources, reading.defines);
     // Where the stack cannot be had `grow` panics before it calls.
     let mut begun = false;
     let read = AssertUnwindSafe(|| {
         stacker::grow(STACK_BYTES, || {
             begun = true;
-            items::read(sources, file, catalog, &defines)
+            items::read(sources, file, reading, &defines)
         })
     });
     match catch_unwind(read) {
@@ -65,6 +119,17 @@ pub fn read(
                 .fault(crate::diag::Fault::Io),
         ]),
     }
+}
+
+/// The items of a text as they were written, each with its place; or every mistake in their wording.
+pub fn items(sources: &SourceMap, file: FileId) -> Result<Vec<ast::Item>, Vec<Diagnostic>> {
+    stacker::grow(STACK_BYTES, || items::parsed(&sources.file(file).text, file))
+}
+
+/// A text in the house style; every mistake in its wording, where there are some.
+pub fn formatted(sources: &SourceMap, file: FileId) -> Result<String, Vec<Diagnostic>> {
+    items(sources, file)?;
+    Ok(format::format(&sources.file(file).text, file))
 }
 
 /// What the language itself knows beside the catalogue: how it is written, and one sentence. Functions first,

@@ -3,13 +3,14 @@
 
 use std::collections::HashMap;
 
-use super::ast::{Args, Expr, ExprKind, Item, ItemKind, Step, Word};
+use super::ast::{Args, Expr, ExprKind, Function, Item, ItemKind, Step, Word};
 use crate::diag::Diagnostic;
 
 /// The name that an item defines in the file.
 pub fn defined(item: &Item) -> Option<&Word> {
     match &item.kind {
-        ItemKind::Let(name, _) | ItemKind::Material(name, _) => Some(name),
+        ItemKind::Let(name, _) | ItemKind::Material(name, _) | ItemKind::Function(name, _) => Some(name),
+        ItemKind::Import(import) => import.space.as_ref(),
         ItemKind::Param(param) => Some(&param.name),
         _ => None,
     }
@@ -95,7 +96,11 @@ impl Walk<'_> {
                 State::Open => {
                     let from = path.iter().position(|(j, _)| *j == need).unwrap_or(0);
                     let cycle: Vec<usize> = path[from..].iter().map(|(j, _)| *j).collect();
-                    self.cycle(&cycle);
+                    // Functions may call themselves, and each other.
+                    let recurs = |i: &usize| matches!(self.items[*i].kind, ItemKind::Function(..));
+                    if !cycle.iter().all(recurs) {
+                        self.cycle(&cycle);
+                    }
                 }
                 State::Done => {}
             }
@@ -115,18 +120,19 @@ impl Walk<'_> {
     }
 }
 
-/// Whether an expression uses one of some names.
+/// Whether an expression uses one of some names from outside of it.
 pub fn uses(expr: &Expr, names: &[&str]) -> bool {
-    let mut used = Uses { names: Vec::new(), takes_condition: &|_| false };
+    let mut used = Uses { names: Vec::new(), hidden: Vec::new(), takes_condition: &|_| false };
     used.expr(expr);
     used.names.iter().any(|n| names.contains(n))
 }
 
 /// The names that an item uses.
 fn needed<'a>(item: &'a Item, takes_condition: &dyn Fn(&str) -> bool) -> Vec<&'a str> {
-    let mut uses = Uses { names: Vec::new(), takes_condition };
+    let mut uses = Uses { names: Vec::new(), hidden: Vec::new(), takes_condition };
     match &item.kind {
         ItemKind::Let(_, value) => uses.expr(value),
+        ItemKind::Function(_, function) => uses.function(function),
         ItemKind::Material(_, args) => uses.args(args, false),
         ItemKind::Param(param) => {
             uses.expr(&param.default);
@@ -141,6 +147,8 @@ fn needed<'a>(item: &'a Item, takes_condition: &dyn Fn(&str) -> bool) -> Vec<&'a
 
 struct Uses<'a, 'f> {
     names: Vec<&'a str>,
+    /// Names of blocks, loops and parameters around.
+    hidden: Vec<&'a str>,
     takes_condition: &'f dyn Fn(&str) -> bool,
 }
 
@@ -163,6 +171,7 @@ impl<'a> Uses<'a, '_> {
 
     fn expr(&mut self, expr: &'a Expr) {
         match &expr.kind {
+            ExprKind::Name(name) if self.hidden.contains(&name.as_str()) => {}
             ExprKind::Name(name) => self.names.push(name),
             ExprKind::List(items) => items.iter().for_each(|i| self.expr(i)),
             ExprKind::Paren(inside) | ExprKind::Prefix(_, _, inside) => self.expr(inside),
@@ -181,7 +190,28 @@ impl<'a> Uses<'a, '_> {
                     }
                 }
             }
-            _ => {}
+            ExprKind::If(parts) => parts.iter().for_each(|part| self.expr(part)),
+            ExprKind::For(bindings, body) | ExprKind::Block(bindings, body) => {
+                let outside = self.hidden.len();
+                for (name, value) in bindings {
+                    self.expr(value);
+                    self.hidden.push(&name.text);
+                }
+                self.expr(body);
+                self.hidden.truncate(outside);
+            }
+            ExprKind::Function(function) => self.function(function),
+            ExprKind::Number(..) | ExprKind::Color(_) | ExprKind::Text(_) | ExprKind::Bool(_) => {}
         }
+    }
+
+    fn function(&mut self, function: &'a Function) {
+        let outside = self.hidden.len();
+        for param in &function.params {
+            param.default.iter().for_each(|default| self.expr(default));
+            self.hidden.push(&param.name.text);
+        }
+        self.expr(&function.body);
+        self.hidden.truncate(outside);
     }
 }

@@ -1,16 +1,19 @@
 //! Text of one item to its tree. The only file that knows the parser generator: the grammar is
 //! `grammar/pss.pest`, precedence is here, wording of errors is left to `syntax`.
 
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use pest::Parser;
 use pest::error::{ErrorVariant, InputLocation};
 use pest::iterators::{Pair, Pairs};
 use pest::pratt_parser::{Assoc, Op, PrattParser};
 
-use super::ast::{Arg, Args, Expr, ExprKind, InfixOp, Item, ItemKind, Param, PrefixOp, Step, Word};
+use super::ast::{
+    Arg, Args, Expect, Expr, ExprKind, Formal, Function, Import, InfixOp, Item, ItemKind, Param, PrefixOp,
+    Step, Word,
+};
 use super::syntax::Refused;
-use super::{chains, literals, span};
+use super::{chains, literals, order, span};
 use crate::diag::Diagnostic;
 use crate::source::{FileId, Span};
 
@@ -120,10 +123,13 @@ impl Build {
                 ItemKind::Units(self.word(&word))
             }
             Rule::draw_item => self.draw(inner)?,
-            Rule::fn_item => ItemKind::Later("fn"),
-            Rule::import_item => ItemKind::Later("import"),
-            Rule::print_item => ItemKind::Later("print"),
-            _ => ItemKind::Later("expect"),
+            Rule::fn_item => {
+                let name = self.next_name(&mut inner)?;
+                ItemKind::Function(name, self.function(inner)?)
+            }
+            Rule::import_item => ItemKind::Import(self.import(inner)?),
+            Rule::print_item => ItemKind::Print(self.next_expr(&mut inner)?),
+            _ => ItemKind::Expect(Box::new(self.expect(inner)?)),
         };
         Ok(Item { kind, at })
     }
@@ -151,6 +157,57 @@ impl Build {
         Ok(Param { name, kind, default, allowed })
     }
 
+    /// What follows the name of a function, or its keyword.
+    fn function(&self, mut pairs: Pairs<Rule>) -> Parsed<Arc<Function>> {
+        let formals = pairs.find(|p| p.as_rule() == Rule::formals).ok_or_else(|| self.lost())?;
+        let formal = |pair: Pair<Rule>| {
+            let mut parts = pair.into_inner();
+            let name = self.next_name(&mut parts)?;
+            let kind = parts.clone().find(|p| p.as_rule() == Rule::type_word).map(|p| self.word(&p));
+            let default = parts.find(|p| p.as_rule() == Rule::expr).map(|p| self.expr(p)).transpose()?;
+            Ok(Formal { name, kind, default })
+        };
+        let params = formals.into_inner().map(formal).collect::<Parsed<Vec<Formal>>>()?;
+        once(params.iter().map(|p| &p.name))?;
+        Ok(Arc::new(Function { params, body: self.next_expr(&mut pairs)? }))
+    }
+
+    fn import(&self, mut pairs: Pairs<Rule>) -> Parsed<Import> {
+        let string = pairs.find(|p| p.as_rule() == Rule::string).ok_or_else(|| self.lost())?;
+        let at = self.place(&string);
+        Ok(Import { path: literals::text(string.as_str(), at)?, at, space: self.label(&mut pairs) })
+    }
+
+    fn expect(&self, mut pairs: Pairs<Rule>) -> Parsed<Expect> {
+        let left = self.next_expr(&mut pairs)?;
+        let rest: Vec<Pair<Rule>> = pairs.collect();
+        let after = |rule: fn(&Rule) -> bool| {
+            let sign = rest.iter().position(|p| rule(&p.as_rule()))?;
+            Some((rest[sign].as_rule(), self.expr(rest.get(sign + 1)?.clone())))
+        };
+        let right = after(|r| matches!(r, Rule::is_kw | Rule::nearly));
+        let right = right.map(|(sign, expr)| Ok::<_, Box<Diagnostic>>((sign == Rule::nearly, expr?)));
+        let percent = rest.iter().any(|p| p.as_rule() == Rule::percent);
+        let within =
+            after(|r| *r == Rule::within_kw).map(|(_, expr)| Ok::<_, Box<Diagnostic>>((expr?, percent)));
+        Ok(Expect { left, right: right.transpose()?, within: within.transpose()? })
+    }
+
+    /// `name in expr` or `name = expr`, all that there are.
+    fn bindings<'t>(&self, pairs: impl Iterator<Item = Pair<'t, Rule>>) -> Parsed<Vec<(Word, Expr)>> {
+        let mut bound = Vec::new();
+        let mut name = None;
+        for pair in pairs {
+            match pair.as_rule() {
+                Rule::name => name = Some(self.word(&pair)),
+                Rule::expr => bound.extend(name.take().zip(Some(self.expr(pair)?))),
+                _ => {}
+            }
+        }
+        once(bound.iter().map(|(name, _)| name))?;
+        Ok(bound)
+    }
+
     fn draw(&self, mut pairs: Pairs<Rule>) -> Parsed<ItemKind> {
         let words = pairs.clone().filter(|p| p.as_rule() == Rule::attribute);
         let words = words.filter_map(|p| p.into_inner().next()).map(|p| self.word(&p)).collect();
@@ -162,12 +219,28 @@ impl Build {
         let inner = pair.into_inner().next().ok_or_else(|| self.lost())?;
         let kind = match inner.as_rule() {
             Rule::plain => return self.plain(inner),
-            Rule::if_expr => ExprKind::Later("if"),
-            Rule::for_expr => ExprKind::Later("for"),
-            Rule::fn_expr => ExprKind::Later("fn"),
+            Rule::if_expr => return self.condition(inner),
+            Rule::for_expr => {
+                let parts = inner.into_inner();
+                let bound = self.bindings(parts.clone())?;
+                let body = parts.filter(|p| p.as_rule() == Rule::block).last().ok_or_else(|| self.lost())?;
+                ExprKind::For(bound, Box::new(self.atom(body)?))
+            }
+            Rule::fn_expr => ExprKind::Function(self.function(inner.into_inner())?),
             _ => return self.operation(inner),
         };
         Ok(Expr { kind, at })
+    }
+
+    fn condition(&self, pair: Pair<Rule>) -> Parsed<Expr> {
+        let at = self.place(&pair);
+        let mut parts = pair.into_inner();
+        let asked = self.next_expr(&mut parts)?;
+        let then = parts.find(|p| p.as_rule() == Rule::block).ok_or_else(|| self.lost())?;
+        let last = parts.find(|p| matches!(p.as_rule(), Rule::block | Rule::if_expr));
+        let last = last.ok_or_else(|| self.lost())?;
+        let otherwise = if last.as_rule() == Rule::block { self.atom(last)? } else { self.condition(last)? };
+        Ok(Expr { kind: ExprKind::If(Box::new([asked, self.atom(then)?, otherwise])), at })
     }
 
     /// A number, or its negative, alone.
@@ -244,9 +317,17 @@ impl Build {
             Rule::name => ExprKind::Name(text.to_owned()),
             Rule::list => ExprKind::List(pair.into_inner().map(|p| self.expr(p)).collect::<Parsed<_>>()?),
             Rule::paren => ExprKind::Paren(Box::new(self.next_expr(&mut pair.into_inner())?)),
-            _ => ExprKind::Later("{"),
+            _ => self.block(pair)?,
         };
         Ok(Expr { kind, at })
+    }
+
+    fn block(&self, pair: Pair<Rule>) -> Parsed<ExprKind> {
+        let parts = pair.into_inner();
+        let (bindings, rest): (Vec<_>, Vec<_>) = parts.partition(|p| p.as_rule() == Rule::binding);
+        let bound = self.bindings(bindings.into_iter().flat_map(Pair::into_inner))?;
+        let body = rest.into_iter().find(|p| p.as_rule() == Rule::expr).ok_or_else(|| self.lost())?;
+        Ok(ExprKind::Block(bound, Box::new(self.expr(body)?)))
     }
 
     fn args(&self, pair: Pair<Rule>) -> Parsed<Args> {
@@ -258,6 +339,14 @@ impl Build {
             Ok(Arg { name, value: self.next_expr(&mut parts)? })
         });
         Ok(Args { list: list.collect::<Parsed<_>>()?, at })
+    }
+}
+
+/// Refuses a name that is given twice in one scope.
+fn once<'a>(names: impl Iterator<Item = &'a Word>) -> Parsed<()> {
+    match order::redefinitions(names).into_iter().next() {
+        Some(error) => Err(error.into()),
+        None => Ok(()),
     }
 }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::functions::Closure;
 use crate::diag::Diagnostic;
 use crate::scene::{MaterialId, Shape};
 use crate::source::{FileId, Span};
@@ -59,6 +60,31 @@ pub enum Val {
     Shape(Shape),
     /// A material.
     Material(MaterialId),
+    /// A function that the scene defines.
+    Function(Arc<Closure>),
+    /// Named values.
+    Record(Arc<Record>),
+}
+
+/// Named values, such as the bounds of a solid.
+#[derive(Debug)]
+pub struct Record {
+    /// What it is, with its article.
+    pub kind: &'static str,
+    /// The values with their names.
+    pub fields: Vec<(String, Val)>,
+}
+
+impl Record {
+    /// The value of a name.
+    pub fn get(&self, name: &str) -> Option<&Val> {
+        self.fields.iter().find(|(n, _)| n == name).map(|(_, value)| value)
+    }
+
+    /// The names.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.fields.iter().map(|(name, _)| name.as_str())
+    }
 }
 
 /// Values in a row.
@@ -122,6 +148,8 @@ impl Val {
             Val::Range(..) => "a range",
             Val::Shape(_) => "a shape",
             Val::Material(_) => "a material",
+            Val::Function(_) => "a function",
+            Val::Record(record) => record.kind,
         }
     }
 }

@@ -4,6 +4,7 @@
 use std::path::{Component, Path, PathBuf};
 
 use crate::diag::{Diagnostic, Fault};
+use crate::lang::Files;
 use crate::source::Span;
 
 /// The path to open for a name written in a scene.
@@ -17,7 +18,9 @@ pub(super) fn resolve(
 ) -> Result<PathBuf, Diagnostic> {
     let written = Path::new(text);
     if text.contains('\0') {
-        return Err(Diagnostic::error("E0602", "a file name holds no zero byte").at(at, ""));
+        return Err(Diagnostic::error("E0602", "a file name holds no zero byte")
+            .at(at, "")
+            .help("write the name of a file"));
     }
     if from_command_line {
         return Ok(written.to_owned());
@@ -45,6 +48,49 @@ pub(super) fn resolve(
         }
     }
     Ok(path)
+}
+
+/// Reads what scenes import, by the same rules.
+#[derive(Clone, Copy, Debug)]
+pub struct Imports<'a> {
+    /// The folder of the scene.
+    pub scene_dir: &'a Path,
+    /// Other folders below which files may be read.
+    pub allow_read: &'a [PathBuf],
+    /// The longest text, bytes.
+    pub limit: u64,
+}
+
+impl Files for Imports<'_> {
+    fn resolve(&self, written: &str, folder: &Path, at: Span) -> Result<PathBuf, Diagnostic> {
+        let path = resolve(written, folder, false, self.scene_dir, self.allow_read, at)?;
+        // One file by two names is one file.
+        Ok(path.canonicalize().map_or(path.clone(), |real| {
+            let here = std::env::current_dir().and_then(|here| here.canonicalize()).unwrap_or_default();
+            real.strip_prefix(here).map_or(path, Path::to_owned)
+        }))
+    }
+
+    fn read(&self, path: &Path, at: Span) -> Result<String, Diagnostic> {
+        let told = |why: &str| {
+            Diagnostic::error("E0601", format!("cannot read `{}`: {why}", path.display()))
+                .at(at, "imported here")
+        };
+        let missing = |e: std::io::Error| {
+            told(&e.kind().to_string())
+                .help("is the name right? It is relative to the file that imports it")
+                .fault(Fault::Missing)
+        };
+        let meta = std::fs::metadata(path).map_err(missing)?;
+        if !meta.is_file() {
+            return Err(told("it is not a regular file").help("name a scene file"));
+        }
+        if self.limit < meta.len() {
+            return Err(told("it is too long").help("keep points in files of their own: `points(\"a.ply\")`"));
+        }
+        let bytes = std::fs::read(path).map_err(missing)?;
+        String::from_utf8(bytes).map_err(|_| told("it is not UTF-8 text").help("name a scene file"))
+    }
 }
 
 /// Resolves `.` and `..` by name alone, without asking the file system.

@@ -36,6 +36,7 @@ use crate::solid::point_set::Solidity;
 use crate::solid::{Counts, table};
 
 use build::Builder;
+pub use files::Imports;
 use groups::Groups;
 use lower::Lowering;
 pub use outline::{Cutting, Meeting, Outline, Part, Piece};

@@ -29,6 +29,8 @@ pub struct Scene {
     pub materials: Vec<Call>,
     /// The `render` item; `None` where the scene has none.
     pub render: Option<Call>,
+    /// What the `print` items say, in the order written.
+    pub prints: Vec<String>,
 }
 
 /// An item that may carry a name of its own.

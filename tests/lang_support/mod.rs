@@ -1,9 +1,12 @@
 //! A small catalogue and a way to read a scene from a string, for the tests of the language.
 #![allow(dead_code)]
 
+use std::path::{Path, PathBuf};
+
 use pss::diag::Diagnostic;
+use pss::lang::{Files, Reading};
 use pss::scene::{Catalog, Decl, Group, Kind, Param, Scene};
-use pss::source::SourceMap;
+use pss::source::{SourceMap, Span};
 
 const fn decl(word: &'static str, group: Group, params: &'static [Param]) -> Decl {
     Decl { word, group, doc: "", params, example: "" }
@@ -112,14 +115,30 @@ pub fn catalog() -> Catalog {
 /// A scene with its warnings, or errors.
 pub type Outcome = Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>>;
 
+/// Every file that is imported is empty.
+struct Empty;
+
+impl Files for Empty {
+    fn resolve(&self, written: &str, folder: &Path, _: Span) -> Result<PathBuf, Diagnostic> {
+        Ok(folder.join(written))
+    }
+
+    fn read(&self, _: &Path, _: Span) -> Result<String, Diagnostic> {
+        Ok(String::new())
+    }
+}
+
 /// Reads a scene that is called `scene.pss` in the folder `/scenes`.
 pub fn read_with(text: &str, defines: &[(&str, &str)]) -> (Outcome, SourceMap) {
     let mut sources = SourceMap::default();
     let file = sources.add("scene.pss", Some("/scenes/scene.pss".into()), text);
     let defines: Vec<(String, String)> =
         defines.iter().map(|(n, v)| ((*n).to_owned(), (*v).to_owned())).collect();
-    let outcome = pss::lang::read(&mut sources, file, &catalog(), &defines);
-    (outcome, sources)
+    let catalog = catalog();
+    let reading =
+        Reading { catalog: &catalog, defines: &defines, files: Some(&Empty), geometry: None, expects: false };
+    let outcome = pss::lang::read_with(&mut sources, file, &reading);
+    (outcome.map(|read| (read.scene, read.warnings)), sources)
 }
 
 /// What a scene's errors and warnings look like in a terminal.

@@ -28,6 +28,14 @@ pub enum Command {
     Probe(ProbeArgs),
     /// Say what is wrong, or may be, with scenes: names, types, open scans, geometry; renders nothing
     Check(CheckArgs),
+    /// Put scene files into the house style
+    Fmt(FmtArgs),
+    /// Print a scene as JSON: what was written, and what it comes to
+    Dump(DumpArgs),
+    /// Evaluate the `expect` items of all scenes of a folder
+    Test(TestArgs),
+    /// Say what a word of the language, or the code of a message, means; without one, list all words
+    Explain(ExplainArgs),
     /// Say what a cloud of points is like, or convert it
     #[command(subcommand)]
     Cloud(CloudCommand),
@@ -40,6 +48,57 @@ pub enum CloudCommand {
     Info(InfoArgs),
     /// Write a cloud as PLY
     Convert(ConvertArgs),
+}
+
+/// Arguments of `fmt`.
+#[derive(Group, Debug)]
+pub struct FmtArgs {
+    /// Scene files; `-` is standard input, to standard output
+    #[arg(required = true, value_name = "SCENE")]
+    pub scenes: Vec<PathBuf>,
+    /// Change nothing; fail where a file would be changed
+    #[arg(long)]
+    pub check: bool,
+    /// How messages look on standard error
+    #[arg(long, value_enum, default_value_t = MessageFormat::Text)]
+    pub format: MessageFormat,
+}
+
+/// Arguments of `dump`.
+#[derive(Group, Debug)]
+pub struct DumpArgs {
+    /// The scene file; `-` is standard input
+    pub scene: PathBuf,
+    /// As JSON, the only form there is
+    #[arg(long)]
+    pub json: bool,
+    /// What every command that reads a scene takes.
+    #[command(flatten)]
+    pub read: ReadArgs,
+}
+
+/// Arguments of `test`.
+#[derive(Group, Debug)]
+pub struct TestArgs {
+    /// A folder of scenes, or a scene
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// Write a report for a test server
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// What every command that reads a scene takes.
+    #[command(flatten)]
+    pub read: ReadArgs,
+}
+
+/// Arguments of `explain`.
+#[derive(Group, Debug)]
+pub struct ExplainArgs {
+    /// A word, such as `box`, or a code, such as `E0301`
+    pub word: Option<String>,
+    /// How messages look on standard error
+    #[arg(long, value_enum, default_value_t = MessageFormat::Text)]
+    pub format: MessageFormat,
 }
 
 /// Arguments of `cloud info`.
@@ -105,6 +164,11 @@ impl Command {
             Command::Render(args) => of(&args.scene.read),
             Command::Probe(args) => of(&args.scene.read),
             Command::Check(args) => of(&args.read),
+            Command::Dump(args) => of(&args.read),
+            Command::Test(args) => of(&args.read),
+            Command::Fmt(FmtArgs { format, .. }) | Command::Explain(ExplainArgs { format, .. }) => {
+                CloudArgs { threads: 0, format: *format, lenient: false }
+            }
             Command::Cloud(CloudCommand::Info(args)) => args.common,
             Command::Cloud(CloudCommand::Convert(args)) => args.common,
         }

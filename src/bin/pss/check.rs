@@ -26,10 +26,13 @@ pub fn run(args: &CheckArgs, console: &Console) -> u8 {
 /// Shows a scene's warnings and says how many there are.
 fn check(args: &CheckArgs, scene: &Path, console: &Console) -> Result<usize, Failure> {
     let options = Options { measure_all: true, write_out: true, ..Options::default() };
-    let Loaded { shot, outline, sources, warnings, .. } =
-        load::load(scene, &args.read, options, false, console)?;
+    let Loaded { shot, outline, sources, warnings, unmet, .. } =
+        load::load_with(scene, &args.read, options, [false, true], console)?;
     let findings = pss::check::findings(&shot, &outline);
     console.show(&findings, &sources);
+    if !unmet.is_empty() {
+        return Err(Failure::new(unmet, sources));
+    }
     Ok(warnings + findings.len())
 }
 

@@ -113,6 +113,16 @@ impl Console {
         }
     }
 
+    /// What a scene prints.
+    pub fn printed(&self, line: &str) {
+        match self.format {
+            MessageFormat::Text => self.say(line),
+            MessageFormat::Json => {
+                self.say(&serde_json::json!({ "severity": "print", "message": line }).to_string())
+            }
+        }
+    }
+
     fn say(&self, line: &str) {
         // Whoever closed standard error does not want to hear of it.
         let _ = writeln!(io::stderr(), "{line}");

@@ -6,9 +6,11 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use pss::diag::{Diagnostic, Fault};
-use pss::prepare::{self, Options, Outline, ScanReport};
+use pss::lang::{Read as SceneRead, Reading};
+use pss::measure::Measuring;
+use pss::prepare::{self, Imports, Options, Outline, ScanReport};
 use pss::shot::Shot;
-use pss::source::SourceMap;
+use pss::source::{FileId, SourceMap};
 
 use crate::args::{ReadArgs, cut};
 use crate::console::{Console, Failure};
@@ -37,6 +39,8 @@ pub struct Loaded {
     pub sources: SourceMap,
     /// How many warnings there were.
     pub warnings: usize,
+    /// Expectations that are not met, if they were to be evaluated.
+    pub unmet: Vec<Diagnostic>,
 }
 
 /// Reads and prepares a scene. `options` holds what the command has to say; what all commands share is filled
@@ -48,6 +52,17 @@ pub fn load(
     quiet: bool,
     console: &Console,
 ) -> Result<Loaded, Failure> {
+    load_with(scene, args, options, [quiet, false], console)
+}
+
+/// The same, with the scene's expectations evaluated if it is said so.
+pub fn load_with(
+    scene: &Path,
+    args: &ReadArgs,
+    options: Options,
+    [quiet, expects]: [bool; 2],
+    console: &Console,
+) -> Result<Loaded, Failure> {
     let start = Instant::now();
     let mut sources = SourceMap::default();
     let stdin = is_stdin(scene);
@@ -55,23 +70,24 @@ pub fn load(
     let name = if stdin { "<stdin>".to_owned() } else { scene.display().to_string() };
     let path = (!stdin).then(|| scene.to_owned());
     let file = sources.add(name, path, text);
-    let catalog = prepare::catalog();
-    let read = pss::lang::read(&mut sources, file, &catalog, &args.define);
-    let (understood, warnings) = match read {
-        Ok(read) => read,
-        Err(errors) => return Err(Failure::new(errors, sources)),
-    };
-    if !quiet {
-        console.show(&warnings, &sources);
-    }
-    let parsing = start.elapsed();
-    let start = Instant::now();
     let options = Options {
         scene_dir: if stdin { PathBuf::from(".") } else { folder(scene) },
         allow_read: args.allow_read.clone(),
         cut: cut(args.lenient),
         ..options
     };
+    let measuring = Measuring::new(&options);
+    let read = match understand(&mut sources, file, args, &options, &measuring, expects) {
+        Ok(read) => read,
+        Err(errors) => return Err(Failure::new(errors, sources)),
+    };
+    let SceneRead { scene: understood, warnings, unmet } = read;
+    if !quiet {
+        console.show(&warnings, &sources);
+    }
+    understood.prints.iter().for_each(|line| console.printed(line));
+    let parsing = start.elapsed();
+    let start = Instant::now();
     let prepared = match prepare::prepare(&understood, &options) {
         Ok(prepared) => prepared,
         Err(errors) => return Err(Failure::new(errors, sources)),
@@ -80,7 +96,8 @@ pub fn load(
         console.show(&prepared.warnings, &sources);
     }
     let texts = sources.files().filter_map(|f| f.path.clone());
-    let inputs = texts.chain(prepared.inputs).collect();
+    let mut inputs: Vec<PathBuf> = texts.chain(prepared.inputs).collect();
+    inputs.extend(measuring.inputs());
     Ok(Loaded {
         shot: prepared.shot,
         inputs,
@@ -90,8 +107,31 @@ pub fn load(
         loading: prepared.loading,
         outline: prepared.outline,
         warnings: warnings.len() + prepared.warnings.len(),
+        unmet,
         sources,
     })
+}
+
+/// Reads a scene that is among the texts already.
+pub fn understand(
+    sources: &mut SourceMap,
+    file: FileId,
+    args: &ReadArgs,
+    options: &Options,
+    measuring: &Measuring,
+    expects: bool,
+) -> Result<SceneRead, Vec<Diagnostic>> {
+    let catalog = prepare::catalog();
+    let imports =
+        Imports { scene_dir: &options.scene_dir, allow_read: &options.allow_read, limit: MAX_SCENE };
+    let reading = Reading {
+        catalog: &catalog,
+        defines: &args.define,
+        files: Some(&imports),
+        geometry: Some(measuring),
+        expects,
+    };
+    pss::lang::read_with(sources, file, &reading)
 }
 
 /// Whether the scene comes from standard input.
@@ -99,12 +139,14 @@ pub fn is_stdin(scene: &Path) -> bool {
     scene.as_os_str() == "-"
 }
 
-fn folder(scene: &Path) -> PathBuf {
+/// The folder of a scene.
+pub fn folder(scene: &Path) -> PathBuf {
     let parent = scene.parent().filter(|p| !p.as_os_str().is_empty());
     parent.unwrap_or(Path::new(".")).to_owned()
 }
 
-fn read_scene(path: &Path) -> Result<String, Failure> {
+/// The text of a scene.
+pub fn read_scene(path: &Path) -> Result<String, Failure> {
     let bytes =
         if is_stdin(path) { read_limited(io::stdin().lock(), MAX_SCENE) } else { read_file(path, MAX_SCENE) };
     let missing = |e: io::Error| {

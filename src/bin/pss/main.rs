@@ -5,12 +5,16 @@ mod args;
 mod check;
 mod cloud;
 mod console;
+mod dump;
+mod explain;
+mod fmt;
 mod load;
 mod probe;
 mod progress;
 mod render;
 mod stats;
 mod system;
+mod test;
 
 use std::process::ExitCode;
 
@@ -36,6 +40,10 @@ fn main() -> ExitCode {
             Command::Render(args) => render::run(args, &console).map(|()| 0),
             Command::Probe(args) => probe::run(args, &console).map(|()| 0),
             Command::Check(args) => Ok(check::run(args, &console)),
+            Command::Fmt(args) => fmt::run(args, &console),
+            Command::Dump(args) => dump::run(args, &console).map(|()| 0),
+            Command::Test(args) => test::run(args, &console),
+            Command::Explain(args) => explain::run(args).map(|()| 0),
             Command::Cloud(command) => cloud::run(command, &console).map(|()| 0),
         }
     });

@@ -1,0 +1,166 @@
+//! `expect`: what a scene says must hold, and the complaint where it does not.
+
+use super::arithmetic;
+use super::ast::{Expect, Expr};
+use super::eval::Machine;
+use super::print::text;
+use super::queries::Asked;
+use super::value::{Eval, Located, Val};
+use crate::diag::{Diagnostic, Fault};
+use crate::scene::{BooleanOp, Operand, Shape, ShapeKind};
+use crate::source::Span;
+
+/// What `~=` allows where nothing else is said, a share of the right side.
+const NEARLY: f64 = 1e-9;
+
+/// How far two values may differ.
+#[derive(Clone, Copy)]
+enum Room {
+    None,
+    /// A length.
+    Absolute(f64),
+    /// A share of the right side.
+    Share(f64),
+}
+
+impl Machine<'_> {
+    /// `None` where an expectation holds, else what to say.
+    pub fn expect(&mut self, expect: &Expect, at: Span) -> Eval<Option<Diagnostic>> {
+        self.bars.set(0.0);
+        let left = self.located(&expect.left)?;
+        let Some((nearly, right)) = &expect.right else {
+            if let Some((room, _)) = &expect.within {
+                let error = Diagnostic::error("E0802", "`within` belongs to a comparison");
+                return Err(error.at(room.at, "of what?").help("write `expect a ~= b within 1%`").into());
+            }
+            return match left.value {
+                Val::Bool(true) => Ok(None),
+                Val::Bool(false) => Ok(Some(self.unmet(&expect.left, at)?)),
+                _ => Err(left
+                    .unlike("expect", "a condition")
+                    .help("compare it: `expect volume(part) ~= 6.43 within 0.5%`")
+                    .into()),
+            };
+        };
+        let right = self.located(right)?;
+        let room = self.room(expect, *nearly)?;
+        let holds = self.agree(&left, &right, room)?;
+        Ok((!holds).then(|| self.differs(&left, &right, room, at)))
+    }
+
+    fn room(&mut self, expect: &Expect, nearly: bool) -> Eval<Room> {
+        let Some((expr, percent)) = &expect.within else {
+            return Ok(if nearly { Room::Share(NEARLY) } else { Room::None });
+        };
+        let given = self.located(expr)?;
+        let x = match (&given.value, percent) {
+            (Val::Angle(x), false) => *x,
+            _ => given.number("within")?,
+        };
+        if x < 0.0 {
+            let error = Diagnostic::error("E0503", "`within` is not below zero").at(given.at, format!("{x}"));
+            return Err(error.help("write how far the two sides may differ").into());
+        }
+        Ok(if *percent { Room::Share(x / 100.0) } else { Room::Absolute(x) })
+    }
+
+    /// Whether two values agree within some room.
+    fn agree(&mut self, a: &Located, b: &Located, room: Room) -> Eval<bool> {
+        if let (Val::Shape(a_shape), Val::Shape(b_shape)) = (&a.value, &b.value) {
+            return self.same_solid(a_shape, b_shape, a.at.to(b.at));
+        }
+        if let Some(distance) = distance(&a.value, &b.value) {
+            let allowed = match room {
+                Room::None => 0.0,
+                Room::Absolute(x) => x,
+                Room::Share(x) => x * size(&b.value),
+            };
+            return Ok(distance <= allowed);
+        }
+        arithmetic::equal(&a.value, &b.value).ok_or_else(|| {
+            let (left, right) = (a.value.kind(), b.value.kind());
+            let error = Diagnostic::error("E0203", format!("{left} and {right} cannot be compared"));
+            error.at(a.at, left).at(b.at, right).help("compare values of one kind").into()
+        })
+    }
+
+    /// Two solids are the same where their symmetric difference is empty.
+    pub fn same_solid(&self, a: &Shape, b: &Shape, at: Span) -> Eval<bool> {
+        let operand = |shape: &Shape| Operand { shape: shape.clone(), at };
+        let kind = ShapeKind::Boolean { op: BooleanOp::Xor, operands: vec![operand(a), operand(b)] };
+        let shape = Shape::new(kind, at);
+        let Some(geometry) = self.geometry else {
+            let error = Diagnostic::error("E0708", "solids cannot be compared here").at(at, "no geometry");
+            return Err(error.help("compare them in the scene itself").into());
+        };
+        let asked = Asked { shape: &shape, materials: &self.materials, at };
+        let answer = geometry.is_empty(&asked);
+        answer.map_err(|errors| match errors.into_iter().next() {
+            Some(error) => error.into(),
+            None => Diagnostic::error("E0708", "the solids cannot be compared").at(at, "").into(),
+        })
+    }
+
+    /// The complaint about a condition, with both sides of a comparison.
+    fn unmet(&mut self, condition: &Expr, at: Span) -> Eval<Diagnostic> {
+        let error = not_met(at);
+        let super::ast::ExprKind::Infix(first, rest) = &condition.kind else { return Ok(error) };
+        let [(op, _, second)] = rest.as_slice() else { return Ok(error) };
+        if !op.compares() {
+            return Ok(error);
+        }
+        let sides = [self.located(first)?, self.located(second)?];
+        let [left, right] = sides.map(|side| text(&side.value));
+        Ok(error.note(format!("the left side is {left}{}, the right {right}", self.bar())))
+    }
+
+    fn differs(&self, left: &Located, right: &Located, room: Room, at: Span) -> Diagnostic {
+        let error = not_met(at);
+        let apart = distance(&left.value, &right.value).map(|d| match room {
+            Room::Share(x) => {
+                let share = 100.0 * d / size(&right.value);
+                format!("; they differ by {d:.3e}, {share:.3} %, where {:.3} % are allowed", 100.0 * x)
+            }
+            Room::Absolute(x) => format!("; they differ by {d:.3e}, where {x} is allowed"),
+            Room::None => format!("; they differ by {d:.3e}"),
+        });
+        let (left, right) = (text(&left.value), text(&right.value));
+        error.note(format!(
+            "the left side is {left}{}, the right {right}{}",
+            self.bar(),
+            apart.unwrap_or_default()
+        ))
+    }
+
+    /// The bar of what was measured.
+    fn bar(&self) -> String {
+        match self.bars.get() {
+            0.0 => String::new(),
+            bar => format!(" (+- {bar:.1e})"),
+        }
+    }
+}
+
+fn not_met(at: Span) -> Diagnostic {
+    Diagnostic::error("E0801", "an expectation is not met").at(at, "does not hold").fault(Fault::Unmet)
+}
+
+/// How far two numbers, angles (degrees) or vectors are apart: the largest of the components.
+fn distance(a: &Val, b: &Val) -> Option<f64> {
+    match (a, b) {
+        (Val::Number(a), Val::Number(b)) | (Val::Angle(a), Val::Angle(b)) => Some((a - b).abs()),
+        _ => {
+            let (a, b) = (a.numbers()?, b.numbers()?);
+            let differences = a.iter().zip(&b).map(|(x, y)| (x - y).abs());
+            (a.len() == b.len()).then(|| differences.fold(0.0, f64::max))
+        }
+    }
+}
+
+/// What a share is a share of.
+fn size(value: &Val) -> f64 {
+    match value {
+        Val::Number(x) | Val::Angle(x) => x.abs(),
+        value => value.numbers().unwrap_or_default().into_iter().fold(0.0, |m, x| m.max(x.abs())),
+    }
+}

@@ -1,0 +1,113 @@
+//! Choices, loops and blocks.
+
+use super::ast::{Expr, Word};
+use super::eval::Machine;
+use super::value::{Eval, List, Located, Val};
+use crate::diag::Diagnostic;
+use crate::source::Span;
+
+/// Elements of one list, at most.
+const MAX_ELEMENTS: usize = 1_000_000;
+
+impl Machine<'_> {
+    /// `if a { b } else { c }`: of b and c one is evaluated.
+    pub fn choose(&mut self, [asked, then, otherwise]: &[Expr; 3]) -> Eval<Val> {
+        let condition = self.located(asked)?;
+        match condition.value {
+            Val::Bool(true) => self.value(then),
+            Val::Bool(false) => self.value(otherwise),
+            _ => Err(condition
+                .unlike("if", "a condition")
+                .help("compare something: `if n > 3 { ... }`")
+                .into()),
+        }
+    }
+
+    /// `{ let a = b  c }`: each name is known from its line on.
+    pub fn block(&mut self, bindings: &[(Word, Expr)], body: &Expr) -> Eval<Val> {
+        let outside = self.locals.clone();
+        let value = self.bind(bindings).and_then(|()| self.value(body));
+        self.locals = outside;
+        value
+    }
+
+    fn bind(&mut self, bindings: &[(Word, Expr)]) -> Eval<()> {
+        for (name, expr) in bindings {
+            let value = self.named(&name.text, expr)?;
+            self.hides_builtin(name);
+            self.locals = self.locals.with(&name.text, value);
+        }
+        Ok(())
+    }
+
+    /// `for a in b, c in d { e }`: one flat list, the last name fastest.
+    pub fn repeat(&mut self, loops: &[(Word, Expr)], body: &Expr, at: Span) -> Eval<Val> {
+        let outside = self.locals.clone();
+        let mut out = Vec::new();
+        let done = self.turns(loops, body, at, &mut out);
+        self.locals = outside;
+        done?;
+        List::value(out, at)
+    }
+
+    fn turns(&mut self, loops: &[(Word, Expr)], body: &Expr, at: Span, out: &mut Vec<Located>) -> Eval<()> {
+        let Some(((name, over), rest)) = loops.split_first() else {
+            if MAX_ELEMENTS <= out.len() {
+                return Err(too_long(at).into());
+            }
+            out.push(self.located(body)?);
+            return Ok(());
+        };
+        let over = self.located(over)?;
+        let outside = self.locals.clone();
+        let mut turn = |machine: &mut Self, value: Val| {
+            machine.step(at)?;
+            machine.locals = outside.with(&name.text, value);
+            machine.turns(rest, body, at, out)
+        };
+        match &over.value {
+            Val::List(list) => list.items.iter().try_for_each(|item| turn(self, item.value.clone())),
+            Val::Range(lo, hi, of_angles) => {
+                let steps = range_count(*lo, *hi);
+                (0..steps).try_for_each(|i| turn(self, range_value(*lo, i, *of_angles)))
+            }
+            _ => Err(over
+                .unlike("for", "a list or a range")
+                .help(format!("write `for {} in 0..5 {{ ... }}`", name.text))
+                .into()),
+        }
+    }
+}
+
+/// How many values `lo..hi` has: lo, lo + 1, ... below hi.
+pub fn range_count(lo: f64, hi: f64) -> u64 {
+    (hi - lo).ceil().max(0.0) as u64
+}
+
+/// One of the values of a range.
+pub fn range_value(lo: f64, i: u64, of_angles: bool) -> Val {
+    let x = lo + i as f64;
+    if of_angles { Val::Angle(x) } else { Val::Number(x) }
+}
+
+/// The elements of a list or a range.
+pub fn elements(given: &Located, name: &str) -> Eval<Vec<Located>> {
+    match &given.value {
+        Val::List(list) => Ok(list.items.clone()),
+        Val::Range(lo, hi, of_angles) => {
+            let count = range_count(*lo, *hi);
+            if MAX_ELEMENTS as u64 <= count {
+                return Err(too_long(given.at).into());
+            }
+            let at = given.at;
+            Ok((0..count).map(|i| Located { value: range_value(*lo, i, *of_angles), at }).collect())
+        }
+        _ => Err(given.unlike(name, "a list").help("write a list: `[a, b]`").into()),
+    }
+}
+
+fn too_long(at: Span) -> Diagnostic {
+    Diagnostic::error("E0703", format!("more than {MAX_ELEMENTS} elements in one list"))
+        .at(at, "too many")
+        .help("make shorter lists")
+}

@@ -1,0 +1,76 @@
+//! Functions of lists, and pure random numbers.
+
+use super::args::{Bound, Formal};
+use super::builtins::Builtin;
+use super::flow::{elements, range_count};
+use super::value::{Eval, List, Val};
+use crate::num::hash::{Stream, mix};
+
+const LIST: &[Formal] = &[Formal::place("list")];
+const LISTS: &[Formal] = &[Formal::place("a"), Formal::place("b")];
+const SEEDS: &[Formal] = &[
+    Formal::place("seed"),
+    Formal::place("i").optional(),
+    Formal::place("j").optional(),
+    Formal::place("k").optional(),
+    Formal::place("l").optional(),
+];
+
+/// The functions.
+pub const TABLE: &[Builtin] = &[
+    Builtin { name: "count", formals: LIST, doc: "How many elements a list or a range has.", call: count },
+    Builtin {
+        name: "concat",
+        formals: LISTS,
+        doc: "The elements of one list, then those of another.",
+        call: concat,
+    },
+    Builtin { name: "sum", formals: LIST, doc: "The sum of a list of numbers or of vectors.", call: sum },
+    Builtin {
+        name: "rand",
+        formals: SEEDS,
+        doc: "A number from 0 to below 1 that depends on its arguments alone.",
+        call: rand,
+    },
+];
+
+fn count(bound: &Bound) -> Eval<Val> {
+    let list = bound.need("list")?;
+    Ok(Val::Number(match &list.value {
+        Val::Range(lo, hi, _) => range_count(*lo, *hi) as f64,
+        _ => elements(list, "list")?.len() as f64,
+    }))
+}
+
+fn concat(bound: &Bound) -> Eval<Val> {
+    let mut all = elements(bound.need("a")?, "a")?;
+    all.extend(elements(bound.need("b")?, "b")?);
+    List::value(all, bound.callee.at)
+}
+
+fn sum(bound: &Bound) -> Eval<Val> {
+    let list = elements(bound.need("list")?, "list")?;
+    let Some(first) = list.first().and_then(|first| first.value.numbers()) else {
+        let numbers = list.iter().map(|item| item.number("list")).collect::<Eval<Vec<f64>>>()?;
+        return Ok(Val::Number(numbers.iter().sum()));
+    };
+    let mut total = vec![0.0; first.len()];
+    for item in &list {
+        let v = item.vector("list", total.len())?;
+        total.iter_mut().zip(v).for_each(|(sum, x)| *sum += x);
+    }
+    Ok(Val::vector(total, bound.callee.at))
+}
+
+/// A hash of the arguments' bits, one after another.
+fn rand(bound: &Bound) -> Eval<Val> {
+    let mut hash = 0;
+    for (formal, given) in SEEDS.iter().zip(&bound.values) {
+        if let Some(given) = given {
+            // The two zeros are one number.
+            let x = given.number(formal.name)? + 0.0;
+            hash = mix(hash ^ x.to_bits());
+        }
+    }
+    Ok(Val::Number(Stream::new(hash).unit()))
+}

@@ -1,0 +1,120 @@
+//! The reference of the language, from the tables that the evaluator reads: `pss explain` and the page in `grammar` print it.
+
+use std::fmt::Write;
+
+use super::args::{self, Formal};
+use super::builtins::{self, Builtin};
+use crate::scene::{Catalog, Group};
+
+/// A word of the language.
+#[derive(Clone, Debug)]
+pub struct Word {
+    /// The word itself.
+    pub name: String,
+    /// Where it belongs.
+    pub chapter: &'static str,
+    /// How it is written.
+    pub call: String,
+    /// One sentence.
+    pub doc: &'static str,
+    /// Its arguments: the name, what it must be, what it is.
+    pub args: Vec<[String; 3]>,
+    /// A call that works; empty where there is none.
+    pub example: &'static str,
+}
+
+/// The chapters, in order.
+pub const CHAPTERS: [&str; 6] =
+    ["Solids and sheets", "Methods", "Functions", "Constants", "Materials", "Items"];
+
+/// All words, chapter by chapter.
+pub fn words(catalog: &Catalog) -> Vec<Word> {
+    let declared = catalog.decls.iter().map(|decl| {
+        let formals = args::formals(decl);
+        let arg = |p: &crate::scene::Param| [p.name.to_owned(), args::wanted(p.kind), p.doc.to_owned()];
+        Word {
+            name: decl.word.to_owned(),
+            chapter: match decl.group {
+                Group::Primitive => CHAPTERS[0],
+                Group::Material => CHAPTERS[4],
+                Group::Camera | Group::Light | Group::Render => CHAPTERS[5],
+            },
+            call: args::signature(decl.word, &formals),
+            doc: decl.doc,
+            args: decl.params.iter().map(arg).collect(),
+            example: decl.example,
+        }
+    });
+    let methods = builtins::METHODS.iter().map(|b| builtin(b, CHAPTERS[1], "."));
+    let functions = builtins::functions().map(|b| builtin(b, CHAPTERS[2], ""));
+    let constants = builtins::CONSTANTS.iter().map(|(name, _, doc)| Word {
+        name: (*name).to_owned(),
+        chapter: CHAPTERS[3],
+        call: (*name).to_owned(),
+        doc,
+        args: Vec::new(),
+        example: "",
+    });
+    let mut all: Vec<Word> = declared.chain(methods).chain(functions).chain(constants).collect();
+    all.sort_by_key(|word| CHAPTERS.iter().position(|chapter| *chapter == word.chapter));
+    all
+}
+
+fn builtin(b: &Builtin, chapter: &'static str, before: &str) -> Word {
+    let arg = |f: &Formal| {
+        let need = if f.required { "" } else { "may be left out" };
+        [f.name.to_owned(), need.to_owned(), String::new()]
+    };
+    Word {
+        name: b.name.to_owned(),
+        chapter,
+        call: format!("{before}{}", args::signature(b.name, b.formals)),
+        doc: b.doc,
+        args: b.formals.iter().filter(|f| !f.required).map(arg).collect(),
+        example: "",
+    }
+}
+
+impl Word {
+    /// All that is known of it, as text.
+    pub fn page(&self) -> String {
+        let mut out = format!("{}\n\n    {}\n", self.call, self.doc);
+        let width = self.args.iter().map(|a| a[0].len()).max().unwrap_or(0);
+        if !self.args.is_empty() {
+            out.push('\n');
+        }
+        for [name, kind, doc] in &self.args {
+            let sign = if doc.is_empty() { "" } else { ": " };
+            let _ = writeln!(out, "    {name:width$}  {kind}{sign}{doc}");
+        }
+        if !self.example.is_empty() {
+            let _ = writeln!(out, "\n    {}", self.example);
+        }
+        out
+    }
+}
+
+/// The page of all words, in Markdown.
+pub fn page(catalog: &Catalog) -> String {
+    let mut out = String::from(
+        "# Words of the language\n\nWritten by `PSS_BLESS=1 cargo test --test lang_reference` from the tables that scenes are read with; `pss explain WORD` prints one.\nArguments without a colon may be given by place, all by name.\n",
+    );
+    let words = words(catalog);
+    for chapter in CHAPTERS {
+        let _ = writeln!(out, "\n## {chapter}\n");
+        for word in words.iter().filter(|word| word.chapter == chapter) {
+            let _ = writeln!(out, "### `{}`\n\n{}\n", word.call, word.doc);
+            for [name, kind, doc] in &word.args {
+                let sign = if doc.is_empty() { "" } else { ": " };
+                let _ = writeln!(out, "- `{name}`: {kind}{sign}{doc}");
+            }
+            if !word.example.is_empty() {
+                let _ = writeln!(out, "\n```pss\n{}\n```", word.example);
+            }
+            if !word.args.is_empty() || !word.example.is_empty() {
+                out.push('\n');
+            }
+        }
+    }
+    format!("{}\n", out.trim_end())
+}

@@ -1,0 +1,106 @@
+//! `pss fmt`, `dump`, `test` and `explain`, `print` and `expect` at the command line.
+
+mod cli_common;
+
+use cli_common::{Folder, Ran};
+
+fn text(folder: &Folder, name: &str) -> String {
+    String::from_utf8(folder.read(name)).unwrap()
+}
+
+fn out(ran: &Ran) -> String {
+    String::from_utf8(ran.stdout.clone()).unwrap()
+}
+
+const MESSY: &str = "// a scene\n\n\n\nlet   r=3 // mm\nfn ring( n ,  at=[0,0,0] )=union(for i in 0 .. n{\nsphere( r:r,at:at+[3*i , -1 ,0] )})\nlet f = fn (x)=>x%2\n draw ring ( 5 )-box( [0,0,-1],\n\n\n [ 1,1,1 ] ) /* cut */\nexpect volume(sphere(r:r))~=113 within 0.5 %\n let s = [-1, - 2, 3 - -4][ 0 ]  camera( eye:[9,9,9] )\nlet g = if s<0 and not(s==3){1}else{ !true }\n\n\n";
+
+#[test]
+fn fmt_puts_scenes_into_the_house_style_once() {
+    let folder = Folder::new();
+    folder.write("a.pss", MESSY);
+    assert_eq!(folder.run(&["fmt", "--check", "a.pss"]).code, 1);
+    assert_eq!(text(&folder, "a.pss"), MESSY);
+    assert_eq!(folder.run(&["fmt", "a.pss"]).code, 0);
+    let neat = text(&folder, "a.pss");
+    let want = "// a scene\n\nlet r = 3 // mm\nfn ring(n, at = [0, 0, 0]) = union(for i in 0..n {\n    sphere(r: r, at: at + [3 * i, -1, 0]) })\nlet f = fn(x) => x % 2\ndraw ring(5) - box([0, 0, -1],\n\n    [1, 1, 1]) /* cut */\nexpect volume(sphere(r: r)) ~= 113 within 0.5%\nlet s = [-1, -2, 3 - -4][0]\ncamera(eye: [9, 9, 9])\nlet g = if s < 0 and not (s == 3) { 1 } else { !true }\n";
+    assert_eq!(neat, want, "{neat}");
+    let again = folder.run(&["fmt", "--check", "a.pss"]);
+    assert_eq!((again.code, again.stderr.as_str()), (0, ""));
+    folder.write("b.pss", "draw sphere(r: ");
+    assert_eq!(folder.run(&["fmt", "b.pss"]).code, 65);
+    assert_eq!(text(&folder, "b.pss"), "draw sphere(r: ");
+    assert_eq!(folder.run(&["fmt", "gone.pss"]).code, 66);
+}
+
+/// The scenes of the project are in the house style, and what is formatted says the same.
+#[test]
+fn every_scene_of_the_project_formats_to_itself() {
+    let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = Folder::new();
+    for entry in std::fs::read_dir(scenes).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|e| e == "pss") {
+            let ran = folder.run(&["fmt", "--check", path.to_str().unwrap()]);
+            assert_eq!((ran.code, ran.stderr.as_str()), (0, ""), "{}", path.display());
+        }
+    }
+}
+
+#[test]
+fn dump_is_json_that_reads_back() {
+    let folder = Folder::new();
+    folder.write("a.pss", "param n: int = 3 in 1..9\nfn f(x) = x * 2\ndraw union(for i in 0..n { sphere(r: f(1), at: [i, 0, 0]) })\nrender(samples: 2)\n");
+    let ran = folder.run(&["dump", "a.pss", "--json", "-D", "n=2"]);
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    let dump = &ran.json_lines()[0];
+    assert_eq!(dump["version"], 1);
+    let items: Vec<pss::lang::ast::Item> = serde_json::from_value(dump["items"].clone()).unwrap();
+    assert_eq!(serde_json::to_value(&items).unwrap(), dump["items"]);
+    let scene: pss::scene::Scene = serde_json::from_value(dump["scene"].clone()).unwrap();
+    assert_eq!(serde_json::to_value(&scene).unwrap(), dump["scene"]);
+    let pss::scene::ShapeKind::Boolean { operands, .. } = &scene.draws[0].shape.0.kind else { panic!() };
+    assert_eq!((items.len(), operands.len()), (4, 2));
+}
+
+#[test]
+fn expectations_are_evaluated_by_check_and_test_and_not_by_render() {
+    let folder = Folder::new();
+    folder.write("good.pss", "draw sphere(r: 1)\nexpect volume(sphere(r: 1)) ~= 4.18879 within 0.1%\nrender(size: [8, 8], samples: 1)\n");
+    folder.write(
+        "bad.pss",
+        "draw sphere(r: 1)\nexpect empty(sphere(r: 1))\nrender(size: [8, 8], samples: 1)\n",
+    );
+    assert_eq!(folder.run(&["check", "good.pss"]).code, 0);
+    let ran = folder.run(&["check", "bad.pss"]);
+    assert!(ran.code == 1 && ran.stderr.contains("E0801"), "{}", ran.stderr);
+    assert_eq!(folder.run(&["render", "bad.pss", "--quiet"]).code, 0);
+    let ran = folder.run(&["test", ".", "--junit", "report.xml"]);
+    assert!(ran.code == 1 && ran.stderr.contains("2 scenes, 1 failed"), "{}", ran.stderr);
+    let report = text(&folder, "report.xml");
+    assert!(
+        report.contains("tests=\"2\" failures=\"1\"") && report.contains("<failure message=\"error[E0801]"),
+        "{report}"
+    );
+    assert_eq!(folder.run(&["test", "good.pss"]).code, 0);
+    assert_eq!(folder.run(&["test", "nowhere"]).code, 66);
+}
+
+#[test]
+fn print_goes_to_standard_error() {
+    let folder = Folder::new();
+    folder.write("a.pss", "draw sphere(r: 1)\nprint [1, 2]\nprint bounds(sphere(r: 1)).size\n");
+    let ran = folder.run(&["probe", "a.pss", "--ray", "-5,0,0 1,0,0", "--json"]);
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, "[1, 2]\n[2, 2, 2]\n"));
+}
+
+#[test]
+fn explain_prints_words_and_codes() {
+    let folder = Folder::new();
+    let page = folder.run(&["explain", "box"]);
+    assert!(page.code == 0 && out(&page).contains("round"), "{}", out(&page));
+    let page = folder.run(&["explain", "e0301"]);
+    assert!(out(&page).contains("draw box(size: 1) - half_space(z < 0)"), "{}", out(&page));
+    let ran = folder.run(&["explain", "bix"]);
+    assert!(ran.code == 2 && ran.stderr.contains("did you mean `box`?"), "{}", ran.stderr);
+    assert!(out(&folder.run(&["explain"])).lines().count() > 100);
+}

@@ -1,0 +1,81 @@
+//! The reference page is what the tables say; every word has a page, and every example is a scene.
+
+use pss::lang::{codes, reference};
+
+#[test]
+fn the_reference_page_is_up_to_date() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/grammar/reference.md");
+    let page = reference::page(&pss::prepare::catalog());
+    if std::env::var_os("PSS_BLESS").is_some() {
+        std::fs::write(path, &page).unwrap();
+    }
+    let known = std::fs::read_to_string(path).unwrap_or_default();
+    assert!(known == page, "run `PSS_BLESS=1 cargo test --test lang_reference`");
+}
+
+#[test]
+fn every_word_has_a_page_and_a_chapter() {
+    let words = reference::words(&pss::prepare::catalog());
+    for word in &words {
+        assert!(!word.doc.is_empty() && reference::CHAPTERS.contains(&word.chapter), "{word:?}");
+        assert!(word.page().contains(word.doc) && word.page().contains(&word.call));
+    }
+    for name in
+        ["box", "points", "move", "close", "union", "volume", "rand", "pi", "matte", "camera", "render"]
+    {
+        assert!(words.iter().any(|word| word.name == name), "{name}");
+    }
+}
+
+/// Every code that the program tells has a page, no page is of a code that is not told, and the scenes show what they say.
+#[test]
+fn every_code_has_a_page_whose_scenes_show_it() {
+    let mut told = std::collections::BTreeSet::new();
+    let mut open = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src"))];
+    while let Some(next) = open.pop() {
+        if next.is_dir() {
+            open.extend(std::fs::read_dir(next).unwrap().map(|entry| entry.unwrap().path()));
+            continue;
+        }
+        if next.ends_with("lang/codes.rs") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&next).unwrap();
+        for (at, _) in text.match_indices(['E', 'W']) {
+            let code: String = text[at..].chars().take(6).collect();
+            let is_code =
+                code.len() == 6 && code.ends_with('"') && code[1..5].chars().all(|c| c.is_ascii_digit());
+            if is_code && text[..at].ends_with('"') {
+                told.insert(code[..5].to_owned());
+            }
+        }
+    }
+    let pages: Vec<&str> = codes::CODES.iter().map(|c| c.code).collect();
+    assert_eq!(told.iter().map(String::as_str).collect::<Vec<_>>(), pages);
+    let mut wrong = Vec::new();
+    for code in codes::CODES.iter().filter(|code| !code.bad.is_empty()) {
+        let (bad, good) = (said(code.bad), said(code.good));
+        if !bad.contains(&code.code.to_owned()) || !good.is_empty() {
+            wrong.push(format!("{}: {bad:?} {good:?}", code.code));
+        }
+        assert!(code.page().contains(code.told));
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// The codes told of a scene: by reading it, or by preparing it.
+fn said(text: &str) -> Vec<String> {
+    let mut sources = pss::source::SourceMap::default();
+    let file = sources.add("scene.pss", None, text);
+    let told = |all: Vec<pss::diag::Diagnostic>| all.iter().map(|d| d.code.to_owned()).collect::<Vec<_>>();
+    match pss::lang::read(&mut sources, file, &pss::prepare::catalog(), &[]) {
+        Ok((scene, warnings)) => {
+            let mut all = told(warnings);
+            all.extend(
+                pss::prepare::prepare(&scene, &Default::default()).err().map(told).unwrap_or_default(),
+            );
+            all
+        }
+        Err(errors) => told(errors),
+    }
+}

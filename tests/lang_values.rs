@@ -1,0 +1,142 @@
+//! Functions, choices, loops, blocks, lists and records: what `print` says of their values.
+
+mod lang_support;
+
+use lang_support::{complaints, scene};
+
+/// What a scene prints, line by line.
+fn prints(text: &str) -> String {
+    scene(text).prints.join("\n")
+}
+
+/// The value of one expression.
+fn value(expr: &str) -> String {
+    prints(&format!("print {expr}"))
+}
+
+#[test]
+fn a_function_is_a_name_for_an_expression_with_parameters() {
+    assert_eq!(prints("fn twice(x) = 2 * x\nprint twice(4)\nprint twice(x: 5)"), "8\n10");
+    assert_eq!(
+        prints("fn f(a, b = a + 1, c = a * b) = [a, b, c]\nprint f(2)\nprint f(2, c: 0)"),
+        "[2, 3, 6]\n[2, 3, 0]"
+    );
+    assert_eq!(prints("let add = fn(a) => fn(b) => a + b\nprint add(1)(2)"), "3");
+    assert_eq!(prints("fn f(g, x) = g(g(x))\nprint f(fn(x) => x * x, 3)"), "81");
+    assert_eq!(prints("fn f(x: length, a: angle) = x * sin(a)\nprint f(1cm, 90deg)"), "10");
+    assert_eq!(prints("print f(3)\nfn f(n) = if n < 2 { 1 } else { n * f(n - 1) }"), "6");
+    assert_eq!(
+        prints(
+            "fn even(n) = if n == 0 { true } else { odd(n - 1) }\nfn odd(n) = if n == 0 { false } else { even(n - 1) }\nprint even(4000)"
+        ),
+        "true"
+    );
+}
+
+#[test]
+fn names_belong_to_where_they_are_written() {
+    assert_eq!(prints("let a = 1\nfn f(b) = a + b\nprint { let a = 100  f(a) }"), "101");
+    assert_eq!(prints("let x = 1\nlet y = { let x = x + 1  x * 10 }\nprint [x, y]"), "[1, 20]");
+    assert_eq!(prints("fn f(x) = { let y = x * x  let z = y + 1  z }\nprint f(3)"), "10");
+    assert_eq!(
+        prints("let fs = for i in 0..3 { fn(x) => x + i }\nprint for f in fs { f(10) }"),
+        "[10, 11, 12]"
+    );
+    assert!(complaints("print { let a = 1  a }\nprint a", &[]).contains("`a` is not known"));
+    assert!(complaints("let b = { let a = c  let c = 1  a }", &[]).contains("`c` is not known"));
+}
+
+#[test]
+fn choices_evaluate_one_side_only() {
+    assert_eq!(value("if 1 < 2 { \"yes\" } else { nowhere }"), "yes");
+    assert_eq!(value("if false { 1 } else if true { 2 } else { 3 }"), "2");
+    assert_eq!(value("true or 1 / 0 > 1"), "true");
+    assert_eq!(value("false and [1, 2][7] == 1"), "false");
+    assert_eq!(value("not (1 == 1 and 2 < 1)"), "true");
+}
+
+#[test]
+fn loops_give_one_flat_list_the_last_name_fastest() {
+    assert_eq!(value("for i in 0..3 { i * i }"), "[0, 1, 4]");
+    assert_eq!(value("for i in 0..2, j in 5..7 { [i, j] }"), "[[0, 5], [0, 6], [1, 5], [1, 6]]");
+    assert_eq!(value("for i in 0..4, j in 0..i { 10 * i + j }"), "[10, 20, 21, 30, 31, 32]");
+    assert_eq!(value("for p in [[1, 2, 3], [4, 5, 6]] { p.x + p[2] }"), "[4, 10]");
+    assert_eq!(value("for i in 3..3 { i }"), "[]");
+    assert_eq!(value("for i in 0.5..3 { i }"), "[0.5, 1.5, 2.5]");
+    assert_eq!(value("for a in 0deg..2deg { a }"), "[0deg, 1deg]");
+}
+
+#[test]
+fn lists_ranges_and_vectors_have_elements() {
+    assert_eq!(value("[count([1, 2, 3]), count(0..2.5), count([])]"), "[3, 3, 0]");
+    assert_eq!(value("(2..9)[3]"), "5");
+    assert_eq!(value("concat([1], 5..7)"), "[1, 5, 6]");
+    assert_eq!(value("[sum([1, 2, 3.5]), sum(0..5), sum([])]"), "[6.5, 10, 0]");
+    assert_eq!(value("sum([[1, 2], [3, 4]])"), "[4, 6]");
+    assert_eq!(value("[1, 2, 3].y"), "2");
+    assert_eq!(value("{ let v = [3, 4]  length(v) }"), "5");
+    assert_eq!(value("[[1, 2], [3, 4]][1][0]"), "3");
+}
+
+#[test]
+fn random_numbers_depend_on_their_arguments_alone() {
+    let many =
+        prints("for_print(1)\n".replace("for_print(1)", "print for i in 0..1000 { rand(7, i) }").as_str());
+    let numbers: Vec<f64> = many.trim_matches(['[', ']']).split(", ").map(|x| x.parse().unwrap()).collect();
+    assert!(numbers.iter().all(|x| (0.0..1.0).contains(x)));
+    let mean = numbers.iter().sum::<f64>() / 1000.0;
+    assert!((mean - 0.5).abs() < 0.04, "{mean}");
+    let mut sorted = numbers.clone();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup();
+    assert_eq!(sorted.len(), 1000);
+    assert_eq!(
+        value("rand(7, 3) == rand(7, 3) and rand(7, 3) != rand(3, 7) and rand(0) == rand(-0)"),
+        "true"
+    );
+}
+
+#[test]
+fn values_are_printed_as_they_are_written() {
+    assert_eq!(value("\"a b\""), "a b");
+    assert_eq!(value("[\"a\", 1.5, 2mm, 90deg, true, #f00]"), "[\"a\", 1.5, 2, 90deg, true, rgb(1, 0, 0)]");
+    assert_eq!(value("[sphere(r: 1), fn(x) => x, 1..4]"), "[a shape, fn(x), 1..4]");
+}
+
+#[test]
+fn shapes_are_made_by_functions_and_loops() {
+    let made = scene(
+        "fn peg(x) = sphere(r: 1, at: [x, 0, 0])\nlet row = union(for i in 0..5 { peg(3 * i) })\ndraw row",
+    );
+    let pss::scene::ShapeKind::Boolean { operands, .. } = &made.draws[0].shape.0.kind else { panic!() };
+    assert_eq!(operands.len(), 5);
+    assert_eq!(scene("draw for i in 0..4 { sphere(r: 1 + i) }").draws.len(), 4);
+}
+
+#[test]
+fn a_formula_calls_the_functions_of_the_scene() {
+    let text = |formula: &str| {
+        format!("fn f(p, q = 1) = {{ let s = p * p  s + q }}\ndraw implicit({formula}, inside: box(size: 3))")
+    };
+    let formula = |text: String| format!("{:?}", scene(&text).draws[0].shape.0.kind);
+    let steps = |text: &str| {
+        let from = text.find("Formula").unwrap();
+        text[from..].split("closed").next().unwrap().to_owned()
+    };
+    assert_eq!(steps(&formula(text("f(x) + y <= 3"))), steps(&formula(text("(x * x + 1) + y <= 3"))));
+    assert_eq!(steps(&formula(text("f(z, q: x) <= 3"))), steps(&formula(text("(z * z + x) <= 3"))));
+    assert_eq!(steps(&formula(text("(if 1 < 2 { x } else { y }) <= 3"))), steps(&formula(text("x <= 3"))));
+}
+
+/// A recursion or a loop without an end is told, with the calls that led there, and ends.
+#[test]
+fn what_has_no_end_is_told() {
+    let told = complaints("fn f(n) = f(n + 1)\nlet a = f(0)", &[]);
+    assert!(told.contains("E0706") && told.contains("in `f`, called at scene.pss:1:11"), "{told}");
+    let told = complaints("let a = for i in 0..1000, j in 0..1000, k in 0..1000 { i }", &[]);
+    assert!(told.contains("E0703") || told.contains("E0709"), "{told}");
+    let told = complaints("fn f(n) = if n == 0 { 0 } else { f(n - 1) + f(n - 1) }\nlet a = f(60)", &[]);
+    assert!(told.contains("E0709"), "{told}");
+    let told = complaints("let a = b\nlet b = f(1)\nfn f(x) = a + x", &[]);
+    assert!(told.contains("E0407"), "{told}");
+}

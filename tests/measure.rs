@@ -1,0 +1,184 @@
+//! What a scene asks of its shapes: closed forms within the bars, and expectations that hold or are told.
+
+use std::f64::consts::PI;
+use std::path::{Path, PathBuf};
+
+use pss::diag::Diagnostic;
+use pss::lang::{Read, Reading};
+use pss::measure::Measuring;
+use pss::prepare::{self, Imports, Options};
+use pss::source::SourceMap;
+
+/// Reads a scene that is in a folder, its expectations evaluated.
+fn read_in(folder: &Path, text: &str) -> Result<Read, String> {
+    let mut sources = SourceMap::default();
+    let file = sources.add("scene.pss", Some(folder.join("scene.pss")), text);
+    let options = Options { scene_dir: folder.to_owned(), ..Options::default() };
+    let (catalog, measuring) = (prepare::catalog(), Measuring::new(&options));
+    let imports = Imports { scene_dir: folder, allow_read: &[] as &[PathBuf], limit: 1 << 20 };
+    let reading = Reading {
+        catalog: &catalog,
+        defines: &[],
+        files: Some(&imports),
+        geometry: Some(&measuring),
+        expects: true,
+    };
+    let told = |all: &[Diagnostic], sources: &SourceMap| pss::report::text(all, sources, false);
+    match pss::lang::read_with(&mut sources, file, &reading) {
+        Ok(read) if read.unmet.is_empty() => Ok(read),
+        Ok(read) => Err(told(&read.unmet, &sources)),
+        Err(errors) => Err(told(&errors, &sources)),
+    }
+}
+
+fn read(text: &str) -> Result<Read, String> {
+    read_in(Path::new("/nowhere"), text)
+}
+
+/// What a scene prints.
+fn prints(text: &str) -> Vec<String> {
+    read(text).unwrap().scene.prints
+}
+
+fn number(expr: &str) -> f64 {
+    prints(&format!("print {expr}"))[0].parse().unwrap()
+}
+
+#[test]
+fn volumes_and_areas_are_those_of_closed_forms() {
+    for (shape, volume, area) in [
+        ("box([1, 2, 3], [2, 4, 7])", 8.0, 28.0),
+        ("sphere(r: 2, at: [100, 0, 0])", 32.0 * PI / 3.0, 16.0 * PI),
+        ("torus(major: 3, minor: 1).rotate_x(37deg)", 6.0 * PI * PI, 12.0 * PI * PI),
+        ("cylinder(r: 1, h: 5)", 5.0 * PI, 12.0 * PI),
+        (
+            "cylinder(r: 1, from: [-2, 0, 0], to: [2, 0, 0]) & cylinder(r: 1, from: [0, -2, 0], to: [0, 2, 0])",
+            16.0 / 3.0,
+            16.0,
+        ),
+        ("sphere(r: 1) - sphere(r: 1)", 0.0, 0.0),
+        ("box(size: 2) - half_space(z < 0)", 4.0, 16.0),
+    ] {
+        let (v, a) = (number(&format!("volume({shape})")), number(&format!("area({shape})")));
+        assert!((v - volume).abs() <= 2e-4 * volume, "{shape}: {v} {volume}");
+        assert!((a - area).abs() <= 5e-3 * area, "{shape}: {a} {area}");
+    }
+    let disc = number("area(plane(z: 0).clip(sphere(r: 1)))");
+    assert!((disc - PI).abs() < 0.02, "{disc}");
+}
+
+/// Sixty bars of one in a thousand: one miss is likely in sixteen runs, two in five hundred.
+#[test]
+fn bars_hold() {
+    let mut missed = 0;
+    for i in 0..60 {
+        let r = 0.3 + 0.017 * f64::from(i);
+        // A ball and one beside it, less what both hold: two caps of known height.
+        let text = format!(
+            "expect volume(sphere(r: {r}, at: [0.1, 0.2, 0.3])) ~= {} within 1e-12",
+            4.0 / 3.0 * PI * r.powi(3)
+        );
+        let Err(told) = read(&text) else { continue };
+        let bar = told.split("(+- ").nth(1).unwrap().split(')').next().unwrap().parse::<f64>().unwrap();
+        let apart =
+            told.split("differ by ").nth(1).unwrap().split(',').next().unwrap().parse::<f64>().unwrap();
+        assert!(bar < 1e-4 * r.powi(3) * 4.2, "{told}");
+        missed += i32::from(bar * 1.05 < apart);
+    }
+    assert!(missed <= 1, "{missed}");
+}
+
+#[test]
+fn middles_bounds_insides_and_rays_are_those_of_closed_forms() {
+    let half = prints("let c = centroid(sphere(r: 2) & half_space(z > 0))\nprint c.x\nprint c.y\nprint c.z");
+    for (x, want) in half.iter().zip([0.0, 0.0, 0.75]) {
+        assert!((x.parse::<f64>().unwrap() - want).abs() < 1e-3, "{half:?}");
+    }
+    assert_eq!(
+        prints(
+            "let b = bounds(box([1, 2, 3], [2, 4, 7]))\nprint b.min\nprint b.size\nprint b.center\nprint b.max.z"
+        ),
+        ["[1, 2, 3]", "[1, 2, 4]", "[1.5, 3, 5]", "7"]
+    );
+    let shell = "let s = sphere(r: 2) - sphere(r: 1)\n";
+    assert_eq!(
+        prints(&format!("{shell}print [inside(s, [0, 0, 1.5]), inside(s, [0, 0, 0]), inside(s, [3, 0, 0])]")),
+        ["[true, false, false]"]
+    );
+    assert_eq!(
+        prints(&format!(
+            "{shell}let hits = raycast(s, from: [-4, 0, 0], dir: [2, 0, 0])\nprint for h in hits {{ h.t }}\nprint hits[1].normal\nprint hits[1].entering"
+        )),
+        ["[1, 1.5, 2.5, 3]", "[1, 0, 0]", "false"]
+    );
+}
+
+#[test]
+fn a_scene_is_built_by_what_it_measures() {
+    let made = read("let a = box(size: [2, 3, 4])\ndraw a | sphere(r: 1).move([0, 0, bounds(a).max.z + 1])\nexpect bounds(a | sphere(r: 1)).max ~= [1, 1.5, 2]").unwrap();
+    assert_eq!(made.scene.draws.len(), 1);
+}
+
+#[test]
+fn expectations_that_hold_are_silent_and_others_are_told() {
+    for text in [
+        "expect 1 < 2",
+        "expect not empty(sphere(r: 1))",
+        "expect empty(sphere(r: 1) & sphere(r: 1, at: [2.5, 0, 0]))",
+        "expect solid(sphere(r: 1))",
+        "expect solid(plane(z: 0)) is false",
+        "expect volume(sphere(r: 1)) ~= 4.18879 within 0.01%",
+        "expect volume(box(size: 2)) is 8 within 1e-9",
+        "expect [1, 2] ~= [1, 2.05] within 0.1",
+        "expect 90deg is 0.25turn",
+        "expect inside(sphere(r: 1), [0, 0, 0])",
+        "let a = box(size: 2)\nlet b = sphere(r: 1.2)\nexpect a - b is a & !b\nexpect (a | b) == (b | a)\nexpect a != b",
+        "let s = sphere(r: 1)\nexpect s ^ s is union([])",
+    ] {
+        assert!(read(text).is_ok(), "{text}\n{}", read(text).unwrap_err());
+    }
+    for (text, told) in [
+        ("expect 1 > 2", "the left side is 1, the right 2"),
+        ("expect volume(box(size: 2)) ~= 9 within 1%", "11.111 %, where 1.000 % are allowed"),
+        ("expect empty(box(size: 2))", "does not hold"),
+        ("expect sphere(r: 1) is sphere(r: 1.001)", "an expectation is not met"),
+        ("expect 3", "`expect` wants a condition, found a number"),
+        ("expect 1 ~= \"a\"", "cannot be compared"),
+        ("print volume(half_space(z < 0))", "no finite volume"),
+        ("print volume(plane(z: 0))", "has no inside"),
+        ("print bounds(union([]))", "has no bounds"),
+    ] {
+        let said = read(text).unwrap_err();
+        assert!(said.contains(told), "{text}\n{said}");
+    }
+}
+
+#[test]
+fn files_are_imported_once_into_scopes_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    std::fs::create_dir(folder.path().join("lib")).unwrap();
+    write(
+        "lib/parts.pss",
+        "import \"sizes.pss\"\nfn peg(h) = cylinder(r: width / 2, h: h)\nlet inner = 3\ndraw sphere(r: 99)\ncamera(eye: [1, 1, 1])\n",
+    );
+    write("lib/sizes.pss", "let width = 4\nprint \"once\"\n");
+    let here = folder.path();
+    let read = read_in(here, "import \"lib/parts.pss\" as parts\nimport \"lib/sizes.pss\"\nlet inner = 7\nprint [parts.inner, inner, width]\ndraw parts.peg(h: 5)\nexpect bounds(parts.peg(5)).size ~= [4, 4, 5]\n").unwrap();
+    assert_eq!(read.scene.prints, ["once", "[3, 7, 4]"]);
+    assert_eq!((read.scene.draws.len(), read.scene.cameras.len()), (1, 0));
+    write("a.pss", "import \"b.pss\"\nlet x = 1\n");
+    write("b.pss", "import \"a.pss\"\nlet y = 2\n");
+    for (text, told) in [
+        ("import \"a.pss\"\n", "E0609"),
+        ("import \"gone.pss\"\n", "E0601"),
+        ("import \"../up.pss\"\n", "E0603"),
+        ("import \"lib/sizes.pss\"\nlet width = 3\n", "E0402"),
+        ("import \"lib/parts.pss\" as p\nprint p.pegg\n", "did you mean `.peg`?"),
+        ("import \"lib/parts.pss\" as p\nunits(cm)\nimport \"units.pss\"\n", "E0513"),
+    ] {
+        write("units.pss", "units(mm)\n");
+        let said = read_in(here, text).unwrap_err();
+        assert!(said.contains(told), "{text}\n{said}");
+    }
+}
