@@ -110,6 +110,8 @@ fn shapes_are_made_by_functions_and_loops() {
     );
     let pss::scene::ShapeKind::Boolean { operands, .. } = &made.draws[0].shape.0.kind else { panic!() };
     assert_eq!(operands.len(), 5);
+    let pss::scene::ShapeKind::Leaf { name, .. } = &operands[0].shape.0.kind else { panic!() };
+    assert_eq!(name, "peg");
     assert_eq!(scene("draw for i in 0..4 { sphere(r: 1 + i) }").draws.len(), 4);
 }
 

@@ -68,8 +68,12 @@ impl Machine<'_> {
     fn within(&mut self, closure: &Closure, given: Vec<Option<Located>>, at: Span) -> Eval<Val> {
         let outside = std::mem::replace(&mut self.locals, closure.locals.clone());
         let module = std::mem::replace(&mut self.module, closure.module);
+        // Shapes are called by what they were written in.
+        let named = closure.name.as_deref().map(str::to_owned);
+        let binding = self.binding.clone();
+        self.binding = named.or(self.binding.take());
         let value = self.body(closure, given, at);
-        (self.locals, self.module) = (outside, module);
+        (self.locals, self.module, self.binding) = (outside, module, binding);
         value
     }
 
