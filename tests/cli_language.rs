@@ -35,9 +35,11 @@ fn fmt_puts_scenes_into_the_house_style_once() {
 /// The scenes of the project are in the house style, and what is formatted says the same.
 #[test]
 fn every_scene_of_the_project_formats_to_itself() {
-    let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let folder = Folder::new();
-    for entry in std::fs::read_dir(scenes).unwrap() {
+    let folders = ["scenes", "scenes/cookbook", "scenes/cookbook/parts"]
+        .map(|f| std::fs::read_dir(root.join(f)).unwrap());
+    for entry in folders.into_iter().flatten() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|e| e == "pss") {
             let ran = folder.run(&["fmt", "--check", path.to_str().unwrap()]);

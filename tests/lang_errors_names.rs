@@ -145,7 +145,7 @@ error[E0403]: `sphere` has no argument `radius`
   |
 1 | draw sphere(radius: 1)
   |             ^^^^^^ unknown argument
-  = help: it is `sphere(r:, at:)`
+  = help: write `r:`; it is `sphere(r:, at:)`
 "#
 }
 

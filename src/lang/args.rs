@@ -4,6 +4,7 @@
 use std::cell::Cell;
 
 use super::ast::{Args, Expr};
+use super::habits;
 use super::queries::Geometry;
 use super::value::{Eval, Located};
 use crate::diag::{Diagnostic, nearest};
@@ -74,7 +75,11 @@ impl<'a> Callee<'a> {
                 Some(name) => self.formals.iter().position(|f| f.name == name.text).ok_or_else(|| {
                     let known = nearest(&name.text, self.formals.iter().map(|f| f.name));
                     let told = format!("`{}` has no argument `{}`", self.word, name.text);
-                    Diagnostic::error("E0403", told).at(name.at, "unknown argument").help(match known {
+                    let error = Diagnostic::error("E0403", told).at(name.at, "unknown argument");
+                    if let Some(help) = habits::instead(&name.text, habits::Place::Argument) {
+                        return error.help(format!("{help}; it is `{}`", self.signature()));
+                    }
+                    error.help(match known {
                         Some(known) => format!("did you mean `{known}`? It is `{}`", self.signature()),
                         None => format!("it is `{}`", self.signature()),
                     })

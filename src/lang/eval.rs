@@ -13,7 +13,7 @@ use super::functions::Closure;
 use super::queries::Geometry;
 use super::scope::Locals;
 use super::value::{Eval, List, Located, Stop, Val};
-use super::{arithmetic, check, sets, units};
+use super::{arithmetic, check, habits, sets, units};
 use crate::diag::{Diagnostic, nearest};
 use crate::scene::{Call, Catalog, Group, MaterialId, Shape, ShapeKind};
 use crate::source::{SourceMap, Span};
@@ -190,6 +190,9 @@ impl Machine<'_> {
         self.callable().for_each(|word| known.push(word));
         builtins::CONSTANTS.iter().for_each(|(word, _, _)| known.push(word));
         let error = Diagnostic::error("E0401", format!("`{name}` is not known")).at(at, "unknown name");
+        if let Some(help) = habits::instead(name, habits::Place::Name) {
+            return error.help(help);
+        }
         match nearest(name, known) {
             Some(known) => error.help(format!("did you mean `{known}`?")),
             None => error.help(format!("define it: `let {name} = ...`")),
@@ -387,6 +390,9 @@ fn no_member(on: &Located, word: &Word) -> Diagnostic {
     }
     let error = Diagnostic::error("E0408", format!("{} has no method `{name}`", on.value.kind()))
         .at(word.at, "unknown method");
+    if let Some(help) = habits::instead(name, habits::Place::Method) {
+        return error.help(help);
+    }
     let known = builtins::METHODS.iter().map(|b| b.name);
     match nearest(name, known.clone()) {
         Some(known) => error.help(format!("did you mean `.{known}`?")),

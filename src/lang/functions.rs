@@ -12,7 +12,7 @@ use crate::diag::Diagnostic;
 use crate::source::Span;
 
 /// Calls within calls, at most.
-const DEEPEST: usize = 10_000;
+const DEEPEST: usize = 1000;
 /// Stack that is left when more is taken, and how much then: a body may nest as deep as the grammar allows.
 pub const RED_ZONE: usize = 16 << 20;
 pub const MORE_STACK: usize = 64 << 20;

@@ -98,6 +98,11 @@ pub fn in_order(mut all: Vec<Diagnostic>) -> Vec<Diagnostic> {
     all
 }
 
+/// The names that a file defines itself.
+fn own_names(items: &[Item]) -> impl Iterator<Item = &Word> {
+    items.iter().filter(|item| !matches!(item.kind, ItemKind::Import(_))).filter_map(order::defined)
+}
+
 /// The label of a camera, or of a light.
 fn label(item: &Item, of_light: bool) -> Option<&Word> {
     match &item.kind {
@@ -181,7 +186,7 @@ impl Reader<'_> {
         };
         let items = &module.items;
         let known = module.imported().filter(|(import, _)| import.space.is_none());
-        let known = known.flat_map(|(_, from)| modules[from].items.iter().filter_map(order::defined));
+        let known = known.flat_map(|(_, from)| own_names(&modules[from].items));
         let own = items.iter().filter_map(order::defined);
         self.errors.extend(order::redefinitions(known.chain(own.clone())));
         let k = self.machine.module;
@@ -189,7 +194,11 @@ impl Reader<'_> {
             self.machine.names[k].insert(name.text.clone(), None);
         }
         for (import, from) in module.imported() {
-            let names = self.machine.names[from].clone();
+            // What a file imports is its own business.
+            let names = own_names(&modules[from].items).map(|name| name.text.clone());
+            let names =
+                names.map(|name| (name.clone(), self.machine.names[from].get(&name).cloned().flatten()));
+            let names: Vec<(String, Option<Val>)> = names.collect();
             match &import.space {
                 Some(space) => {
                     let fields = names.into_iter().filter_map(|(name, value)| Some((name, value?)));

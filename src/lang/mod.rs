@@ -18,6 +18,7 @@ mod formula;
 mod formula_calls;
 mod formula_functions;
 mod functions;
+mod habits;
 mod half_space;
 mod items;
 mod lists;

@@ -10,8 +10,9 @@ use super::items::{in_order, parsed};
 use crate::diag::Diagnostic;
 use crate::source::{FileId, SourceMap, Span};
 
-/// Files of one scene, at most.
+/// Files of one scene, at most, and imports within imports.
 const MAX_FILES: usize = 1000;
+const DEEPEST: usize = 64;
 
 /// A file.
 pub struct Module {
@@ -86,6 +87,12 @@ impl Loading<'_, '_> {
             };
             top.next += 1;
             let from = top.file;
+            if DEEPEST <= stack.len() {
+                let error = Diagnostic::error("E0701", format!("imports nest deeper than {DEEPEST}"));
+                self.errors.push(error.at(at, "the innermost").help("import fewer files from one another"));
+                return;
+            }
+            let Some(top) = stack.last_mut() else { break };
             match self.resolved(&written, from, at) {
                 Ok(path) => match self.known.get(&path) {
                     Some(Some(known)) => top.imports.push(*known),

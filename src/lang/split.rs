@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 use super::scan::{Token, TokenKind, tokens};
-use super::span;
+use super::{habits, span};
 use crate::diag::{Diagnostic, nearest};
 use crate::source::{FileId, Span};
 
@@ -191,7 +191,8 @@ impl Cutter<'_> {
     }
 
     fn no_item(&mut self, i: usize) {
-        let error = not_an_item(self.tokens[i].text(self.text), self.place(i));
+        let next = self.tokens.get(i + 1).map_or("", |t| t.text(self.text));
+        let error = not_an_item(self.tokens[i].text(self.text), next, self.place(i));
         self.out.errors.push(error);
     }
 }
@@ -204,11 +205,20 @@ fn closing_of(opener: &str) -> &'static str {
     }
 }
 
-/// Something stands where an item should begin.
-pub fn not_an_item(word: &str, at: Span) -> Diagnostic {
+/// Something stands where an item should begin; `next` is the token after it.
+pub fn not_an_item(word: &str, next: &str, at: Span) -> Diagnostic {
     let error = Diagnostic::error("E0106", format!("`{}` begins no item", word.escape_debug()));
+    if let Some(help) = habits::instead(word, habits::Place::Item) {
+        return error.at(at, "not an item").help(help);
+    }
     match nearest(word, ITEM_WORDS) {
+        _ if next == "=" => {
+            error.at(at, "not an item").help(format!("a name is given once, by `let {word} = ...`"))
+        }
         Some(known) => error.at(at, "not a keyword").help(format!("did you mean `{known}`?")),
+        None if next == "(" => {
+            error.at(at, "not an item").help(format!("what is to be seen is drawn: `draw {word}(...)`"))
+        }
         None => error
             .at(at, "expected an item")
             .help(format!("an item begins with one of {}", ITEM_WORDS.map(|w| format!("`{w}`")).join(" "))),
@@ -228,6 +238,7 @@ fn stranger(text: &str, token: &Token, at: Span) -> Diagnostic {
             let help = match found {
                 ";" => "items and expressions need nothing between them: remove it",
                 "'" => "strings stand in double quotes",
+                "?" => "a choice is written `if a { b } else { c }`",
                 _ if found.chars().all(char::is_alphabetic) => {
                     "names are made of ASCII letters, digits and `_`"
                 }

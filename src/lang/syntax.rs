@@ -2,8 +2,8 @@
 //! the likely cause. The grammar's own words are never shown.
 
 use super::scan::{Token, TokenKind, tokens};
-use super::span;
 use super::split::{ITEM_WORDS, not_an_item};
+use super::{span, units};
 use crate::diag::Diagnostic;
 use crate::source::{FileId, Span};
 
@@ -170,7 +170,8 @@ impl Slip<'_> {
             && self.found.leads_line
             && self.found.kind == TokenKind::Word
         {
-            return not_an_item(word, at);
+            let next = self.all.get(self.i + 1).map_or("", |t| self.text(t));
+            return not_an_item(word, next, at);
         }
         if after_value { self.after_value(word, at) } else { self.want_value(word, at) }
     }
@@ -218,6 +219,61 @@ impl Slip<'_> {
                 format!("the `{word}` of a call or an index stands on the line of what it follows"),
             ),
             "," => self.comma(),
+            _ => self.brought(word, before, after_value),
+        }
+    }
+
+    /// Habits of other languages.
+    fn brought(&self, word: &str, before: &str, after_value: bool) -> Option<(String, String, String)> {
+        let told = |a: String, b: &str, c: String| Some((a, b.to_owned(), c));
+        let number = self.before.is_some_and(|t| t.kind == TokenKind::Number);
+        let in_list = self.bracket.is_some_and(|(open, _)| self.text(open) == "[");
+        match word {
+            unit if number && units::names().any(|name| name == unit) => told(
+                "a unit touches its number".into(),
+                "a space before it",
+                format!("write `{before}{unit}`"),
+            ),
+            "then" => told("`then` is not needed".into(), "expected `{`", "write `if a { b } else { c }`".into()),
+            "=>" if after_value => told(
+                "a function without a name begins with `fn`".into(),
+                "what are its parameters?",
+                "write `fn(x) => value`".into(),
+            ),
+            ":" if in_list && after_value => told(
+                "`:` makes no range".into(),
+                "expected `,` or `]`",
+                "a range is `0..5`, its end left out; steps are a loop: `for i in 0..5 { 0.5 * i }`".into(),
+            ),
+            "{" if before == ")" => told(
+                "a call is not followed by `{`".into(),
+                "does not fit here",
+                "operands stand in a list: `difference(base, [a, b])`, or between signs: `base - a`".into(),
+            ),
+            "<" if !after_value => told(
+                "a vector stands in square brackets".into(),
+                "not a value",
+                "write `[x, y, z]`".into(),
+            ),
+            "=" if after_value && self.bracket.is_none() => told(
+                "one `=` too many".into(),
+                "does not fit here",
+                "a name is bound once, `let a = 3`; values are compared by `==`".into(),
+            ),
+            _ if after_value
+                && self.bracket.is_none()
+                && self.all.get(self.i + 1).is_some_and(|t| self.text(t) == ":") => told(
+                "arguments stand in parentheses".into(),
+                "does not fit here",
+                "write `sphere(r: 1)`".into(),
+            ),
+            _ if before == ")" && self.found.kind == TokenKind::Word && !self.found.leads_line && self.bracket.is_none() => {
+                told(
+                    format!("`{word}` does not fit after the value"),
+                    "expected an operator or the end of the item",
+                    "what changes a shape is written after it: `shape.move([x, y, z])`, `shape.with(material)`".into(),
+                )
+            }
             _ => None,
         }
     }

@@ -83,7 +83,7 @@ impl Files for Imports<'_> {
         };
         let meta = std::fs::metadata(path).map_err(missing)?;
         if !meta.is_file() {
-            return Err(told("it is not a regular file").help("name a scene file"));
+            return Err(told("it is not a regular file").help("name a scene file").fault(Fault::Missing));
         }
         if self.limit < meta.len() {
             return Err(told("it is too long").help("keep points in files of their own: `points(\"a.ply\")`"));

@@ -1,0 +1,112 @@
+//! Words that people bring along from OpenSCAD, POV-Ray and programming languages, and what is written here instead.
+
+/// Where a word stands.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Place {
+    /// Where an item begins.
+    Item,
+    /// As a name or a function.
+    Name,
+    /// After the point of a shape.
+    Method,
+    /// Before the colon of an argument.
+    Argument,
+}
+
+use Place::{Argument, Item, Method, Name};
+
+const MOVES: &str = "what changes a shape is written after it: `draw shape.move([x, y, z])`";
+const DRAWS: &str = "what is to be seen is drawn: `draw difference(base, [a, b])`, or `draw base - a`";
+const LET: &str = "a value is named by `let name = value`";
+const IMPORT: &str = "write `import \"file.pss\"`, or `import \"file.pss\" as name`";
+const FN: &str = "write `fn name(a, b = 1) = value`";
+const HULL: &str = "there is no hull and no Minkowski sum; `capsule`, `tube`, `box(..., round: r)` and `.offset(r)` are exact round shapes";
+const OUTLINE: &str = "an outline is a list of points: `extrude([[0, 0], [10, 0], [0, 10]], h: 5)`";
+const WEAR: &str = "a material is worn by `.with(matte(#b8683c))`";
+const EXACT: &str = "surfaces are exact: there is no number of facets to set";
+
+/// Words, where they stand, and what helps.
+const HABITS: &[(&[&str], Place, &str)] = &[
+    (&["translate", "rotate", "scale", "mirror", "multmatrix", "resize", "color"], Item, MOVES),
+    (&["union", "difference", "intersection", "merge"], Item, DRAWS),
+    (&["hull", "minkowski"], Item, HULL),
+    (&["module", "function", "def", "func"], Item, FN),
+    (&["var", "const", "#declare", "#local"], Item, LET),
+    (&["include", "use", "#include", "from"], Item, IMPORT),
+    (&["for"], Item, "a loop is a value, a list: `draw for i in 0..5 { sphere(r: 1, at: [3 * i, 0, 0]) }`"),
+    (&["if"], Item, "a choice is a value: `draw if n > 3 { a } else { b }`"),
+    (&["while", "repeat", "#while"], Item, "write `for i in 0..n { ... }`, or a function that calls itself"),
+    (&["return"], Item, "the value of a function is what stands after its `=`: `fn f(x) = 2 * x`"),
+    (&["echo", "puts", "console"], Item, "write `print value`"),
+    (&["assert"], Item, "write `expect condition`"),
+    (&["light_source"], Item, "write `light(at: [x, y, z])`, or `light(direction: [x, y, z])` for a sun"),
+    (&["background"], Item, "write `light sky(color: #dfe8ff)`"),
+    (&["$", "$fn", "$fa", "$fs"], Item, EXACT),
+    (&["cube"], Name, "write `box(size: [x, y, z])`, centred, or `box([0, 0, 0], [x, y, z])`"),
+    (&["ellipsoid"], Name, "write `sphere(r: [x, y, z])`"),
+    (&["linear_extrude", "prism"], Name, "write `extrude(outline, h: 10)`"),
+    (&["rotate_extrude", "lathe", "sor"], Name, "write `revolve(outline)`"),
+    (&["polygon", "square", "circle"], Name, OUTLINE),
+    (
+        &["polyhedron", "surface"],
+        Name,
+        "read triangles with `mesh(\"part.stl\")`, heights with `heightfield(\"map.png\", size: [x, y, z])`",
+    ),
+    (&["hull", "minkowski", "hulling"], Name, HULL),
+    (&["blob", "isosurface"], Name, "write `implicit(x**2 + y**2 + z**2 <= 1, inside: box(size: 3))`"),
+    (&["len"], Name, "write `count(list)`; the length of a vector is `length(v)`"),
+    (&["norm", "vlength"], Name, "write `length(v)`"),
+    (&["pow"], Name, "write `a ** b`"),
+    (&["log"], Name, "write `ln(x)`, or `ln(x) / ln(10)`"),
+    (&["PI", "Pi"], Name, "write `pi`"),
+    (
+        &["rands", "random"],
+        Name,
+        "write `rand(seed, i)`: a number in 0..1 that depends on its arguments alone",
+    ),
+    (
+        &["undef", "null", "None", "nil"],
+        Name,
+        "every name has a value; leave an argument out to have its default",
+    ),
+    (&["str"], Name, "`print` takes any value, and lists of them: `print [\"r\", r]`"),
+    (&["translate"], Name, MOVES),
+    (&["color"], Name, WEAR),
+    (&["atan"], Name, "write `atan2(y, x)`"),
+    (&["translate", "translated", "position", "at"], Method, "write `.move([x, y, z])`"),
+    (&["rotateX", "rotx"], Method, "write `.rotate_x(45deg)`"),
+    (&["rotateY", "roty"], Method, "write `.rotate_y(45deg)`"),
+    (&["rotateZ", "rotz"], Method, "write `.rotate_z(45deg)`"),
+    (&["color", "colour", "texture", "pigment", "material", "paint"], Method, WEAR),
+    (&["resize"], Method, "write `.fit([x, y, z], height: 10)`, or `.scale([x, y, z])`"),
+    (&["union", "add", "join", "fuse"], Method, "write `a | b`"),
+    (&["difference", "subtract", "minus"], Method, "write `a - b`"),
+    (&["intersection", "intersect", "common"], Method, "write `a & b`"),
+    (&["hull", "minkowski"], Method, HULL),
+    (
+        &["len", "size"],
+        Method,
+        "the elements of a list are counted by `count(list)`, a shape is measured by `bounds(shape).size`",
+    ),
+    (&["d", "diameter"], Argument, "write the radius: `r: d / 2`"),
+    (&["radius"], Argument, "write `r:`"),
+    (&["height"], Argument, "write `h:`"),
+    (&["center", "centre", "origin"], Argument, "write the centre: `at: [x, y, z]`"),
+    (&["pigment", "texture", "color", "colour", "material"], Argument, WEAR),
+    (
+        &["location", "position", "pos", "from", "eye"],
+        Argument,
+        "a camera has `eye:`, a light `at:` or `direction:`",
+    ),
+    (&["target", "lookat", "look", "to", "aim"], Argument, "write `look_at: [x, y, z]`"),
+    (&["angle", "fovy"], Argument, "write the vertical angle: `fov: 30deg`"),
+    (&["width", "resolution"], Argument, "write `size: [width, height]`"),
+    (&["spp", "antialias", "quality"], Argument, "write `samples: 16`"),
+    (&["power", "brightness", "energy"], Argument, "write `intensity: 2`"),
+    (&["r1"], Argument, "a cylinder of two radii is `cone(r1: 2, r2: 1, h: 3)`"),
+];
+
+/// What to write instead of a word.
+pub fn instead(word: &str, place: Place) -> Option<&'static str> {
+    HABITS.iter().find(|(words, at, _)| *at == place && words.contains(&word)).map(|(_, _, help)| *help)
+}

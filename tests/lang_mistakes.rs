@@ -1,0 +1,114 @@
+//! What people get wrong who come from OpenSCAD, POV-Ray or a programming language: each mistake gives one error, which names
+//! the repair. The texts stand in `goldens/mistakes.txt`; `PSS_BLESS=1` writes it anew, to be read.
+
+use pss::source::SourceMap;
+
+/// A scene with one mistake, and a word of the repair that its message names.
+const MISTAKES: &[(&str, &str)] = &[
+    ("translate([1, 0, 0]) sphere(r: 1)", ".move([x, y, z])"),
+    ("sphere(r: 1)", "draw sphere(...)"),
+    ("draw sphere(1)", "sphere(r:"),
+    ("draw sphere(d: 2)", "r: d / 2"),
+    ("draw sphere(radius: 2)", "`r:`"),
+    ("draw sphere(r=1)", "`r: value`"),
+    ("draw sphere r: 1", "sphere(r: 1)"),
+    ("draw sphere(r: -1)", "zero or more"),
+    ("draw cube([1, 2, 3])", "box(size: [x, y, z])"),
+    ("draw box([1, 2, 3])", "box([0, 0, 0], [1, 1, 1])"),
+    ("draw box(size: [1, 2])", "[x, y, z]"),
+    ("draw box(size: 1).translate([1, 0, 0])", ".move([x, y, z])"),
+    ("draw box(size: 1).rotate([0, 0, 45])", "rotate(axis:, by:"),
+    ("draw box(size: 1).rotate_z(45)", "45deg"),
+    ("draw cylinder(r1: 1, r2: 0, h: 3)", "cone(r1: 2, r2: 1, h: 3)"),
+    ("draw cylinder(r: 1)", "cylinder(r: 1, h: 2)"),
+    ("draw cylinder(r: 1, height: 2)", "`h:`"),
+    ("draw torus(3, 1)", "torus(major:, minor:"),
+    ("draw sphere(r: 1);", "remove it"),
+    ("$fn = 50", "surfaces are exact"),
+    ("x = 3", "let x = ..."),
+    ("let x = 3\nlet x = 4", "another name"),
+    ("let x = y = 3", "`==`"),
+    ("var a = 3", "let name = value"),
+    ("difference() { box(size: 2) sphere(r: 1) }", "draw base - a"),
+    ("draw difference() { box(size: 2) sphere(r: 1) }", "difference(base, [a, b])"),
+    ("draw union(box(size: 2), sphere(r: 1))", "union([a, b])"),
+    ("draw box(size: 2) + sphere(r: 1)", "a | b"),
+    ("draw box(size: 2) * sphere(r: 1)", "a & b"),
+    ("draw box(size: 2) - sphere(r: 1) | sphere(r: 2)", "(box(size: 2) - sphere(r: 1)) | sphere(r: 2)"),
+    ("draw sphere(r: 1).union(box(size: 1))", "a | b"),
+    ("module peg(h) { cylinder(r: 1, h: h) }", "fn name(a, b = 1) = value"),
+    ("function f(x) = x * 2", "fn name("),
+    ("let f = (x) => x * 2", "fn(x) => value"),
+    ("for (i = [0:5]) sphere(r: i)", "draw for i in 0..5"),
+    ("draw for i in [0:5] { sphere(r: i) }", "0..5"),
+    ("let l = [0:0.5:3]", "for i in 0..5"),
+    ("if (3 > 2) sphere(r: 1)", "draw if n > 3"),
+    ("draw if true then sphere(r: 1) else box(size: 1)", "if a { b } else { c }"),
+    ("let a = true ? 1 : 2", "if a { b } else { c }"),
+    ("let a = 1 == 1 && 2 == 2", "`and`"),
+    ("let a = 1 == 1 || 2 == 2", "`or`"),
+    ("let a = !true", "not condition"),
+    ("while (true) { }", "for i in 0..n"),
+    ("include <lib.scad>", "import \"file.pss\""),
+    ("#include \"colors.inc\"", "import \"file.pss\""),
+    ("#declare r = 3", "let name = value"),
+    ("camera { location <0, 2, -3> }", "camera name(eye: [x, y, z]"),
+    ("camera(position: [1, 2, 3])", "`eye:`"),
+    ("camera(eye: [1, 2, 3], target: [0, 0, 0])", "look_at: [x, y, z]"),
+    ("light_source(at: [1, 1, 1])", "light(at: [x, y, z])"),
+    ("draw sphere(r: 1, pigment: #f00)", ".with(matte(#b8683c))"),
+    ("draw sphere(r: 1).color(#f00)", ".with(matte(#b8683c))"),
+    ("draw sphere(r: 1).with(#f00)", "matte(#b8683c)"),
+    ("material red(color: \"red\")", "#b8683c"),
+    ("let v = <1, 2, 3>", "[x, y, z]"),
+    ("let a = 2^3", "a ** b"),
+    ("let a = sqrt(2", "add the missing `)`"),
+    ("let s = 'abc'", "double quotes"),
+    ("let a = sin(45)", "45deg"),
+    ("let a = .5", "0.5"),
+    ("let a = 5.", "5.0"),
+    ("let a = 5 mm", "5mm"),
+    ("let n = len([1, 2, 3])", "count(list)"),
+    ("let a = pow(2, 3)", "a ** b"),
+    ("let a = PI", "`pi`"),
+    ("echo(\"hi\")", "print value"),
+    ("return 5", "fn f(x) = 2 * x"),
+    ("draw linear_extrude(height: 3)", "extrude(outline, h: 10)"),
+    ("draw rotate_extrude()", "revolve(outline)"),
+    ("draw hull([sphere(r: 1), box(size: 1)])", "no hull"),
+    ("draw mirror([1, 0, 0], box(size: 1))", "shape.mirror(...)"),
+    ("render(width: 800, height: 600)", "size: [width, height]"),
+    ("draw box(size: 1) - plane(z: 0)", "half_space(z < 0)"),
+    ("draw spere(r: 1)", "`sphere`"),
+    ("expect 1 < 2 < 3", "and"),
+];
+
+/// What is said of a scene, by reading or preparing it, and how many errors that were.
+fn said(text: &str) -> (String, usize) {
+    let mut sources = SourceMap::default();
+    let file = sources.add("scene.pss", None, text);
+    let read = pss::lang::read(&mut sources, file, &pss::prepare::catalog(), &[]);
+    let told = read.and_then(|(scene, _)| pss::prepare::prepare(&scene, &Default::default()));
+    let errors = told.err().unwrap_or_default();
+    (pss::report::text(&errors, &sources, false), errors.iter().filter(|e| e.is_error()).count())
+}
+
+#[test]
+fn each_typical_mistake_gives_one_error_that_names_the_repair() {
+    assert!(50 <= MISTAKES.len());
+    let (mut page, mut wrong) = (String::new(), Vec::new());
+    for (scene, repair) in MISTAKES {
+        let (text, errors) = said(scene);
+        if errors != 1 || !text.contains(repair) {
+            wrong.push(format!("{scene}\n{errors} errors, no word of {repair}\n{text}"));
+        }
+        page += &format!("{}\n\n", text.trim_end());
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/goldens/mistakes.txt");
+    if std::env::var_os("PSS_BLESS").is_some() {
+        std::fs::write(path, &page).unwrap();
+    }
+    let known = std::fs::read_to_string(path).unwrap_or_default();
+    assert!(known == page, "the texts changed: run with PSS_BLESS=1 and read the difference");
+}
