@@ -18,6 +18,16 @@ pub struct Builtin {
     pub call: fn(&Bound) -> Eval<Val>,
 }
 
+/// A line of a table.
+pub const fn line(
+    name: &'static str,
+    formals: &'static [Formal<'static>],
+    doc: &'static str,
+    call: fn(&Bound) -> Eval<Val>,
+) -> Builtin {
+    Builtin { name, formals, doc, call }
+}
+
 /// Names of numbers: name, value, meaning.
 pub const CONSTANTS: [(&str, f64, &str); 2] = [
     ("pi", std::f64::consts::PI, "half the circumference of a unit circle"),

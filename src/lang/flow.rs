@@ -12,10 +12,14 @@ const MAX_ELEMENTS: usize = 1_000_000;
 impl Machine<'_> {
     /// `if a { b } else { c }`: of b and c one is evaluated.
     pub fn choose(&mut self, [asked, then, otherwise]: &[Expr; 3]) -> Eval<Val> {
+        if self.condition(asked)? { self.value(then) } else { self.value(otherwise) }
+    }
+
+    /// What an `if` asks.
+    pub fn condition(&mut self, asked: &Expr) -> Eval<bool> {
         let condition = self.located(asked)?;
         match condition.value {
-            Val::Bool(true) => self.value(then),
-            Val::Bool(false) => self.value(otherwise),
+            Val::Bool(holds) => Ok(holds),
             _ => Err(condition
                 .unlike("if", "a condition")
                 .help("compare something: `if n > 3 { ... }`")

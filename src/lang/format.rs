@@ -5,7 +5,7 @@
 //! the line above. At most one empty line in a row is kept.
 
 use super::scan::{Token, TokenKind, tokens};
-use super::split;
+use super::split::{self, ITEM_WORDS};
 use crate::source::FileId;
 
 /// One step of indentation.
@@ -36,8 +36,8 @@ pub fn format(text: &str, file: FileId) -> String {
 struct Writer<'t> {
     text: &'t str,
     out: String,
-    /// For each open bracket, whether it is the first that its line opened and left open.
-    open: Vec<bool>,
+    /// For each open bracket, where its line begins in `out`; of those of one line the first indents.
+    open: Vec<usize>,
     /// Whether nothing stands on the line yet.
     fresh: bool,
     /// Whether the item has a line above this one.
@@ -119,7 +119,7 @@ impl Writer<'_> {
     }
 
     fn indent(&mut self, outside: bool) {
-        let depth = self.open.iter().filter(|first| **first).count();
+        let depth = self.open.chunk_by(|a, b| a == b).count();
         let onward = usize::from(self.open.is_empty() && !outside);
         (0..depth + onward).for_each(|_| self.out.push_str(STEP));
         self.fresh = false;
@@ -145,27 +145,9 @@ impl Writer<'_> {
         self.out.push_str(token.text(self.text));
         self.begun = true;
         if token.kind == TokenKind::Open {
-            // Of the brackets that one line opens and leaves open the first indents.
-            let line = self.out.rfind('\n').map_or(0, |at| at + 1);
-            let same = self.open.len().checked_sub(1).is_some_and(|last| self.opened_since(line, last));
-            self.open.push(!same);
+            self.open.push(self.out.rfind('\n').map_or(0, |at| at + 1));
         }
         self.fresh = false;
-    }
-
-    /// Whether the innermost open bracket stands on the line that begins at a byte.
-    fn opened_since(&self, line: usize, _: usize) -> bool {
-        let mut depth = 0;
-        let own = &self.out[line..self.out.len() - 1];
-        for c in own.chars().rev() {
-            match c {
-                ')' | ']' | '}' => depth += 1,
-                '(' | '[' | '{' if depth == 0 => return true,
-                '(' | '[' | '{' => depth -= 1,
-                _ => {}
-            }
-        }
-        false
     }
 
     /// Comments after the last token.
@@ -206,7 +188,9 @@ fn is_spaced(
                 || !before.ends_operand(text) && before.kind == TokenKind::Sign && !is_sign(second, before)
         }
         (_, "[") => begins_only(a) || before.kind == TokenKind::Sign && !is_sign(second, before),
-        (_, "%") => next.is_some_and(|n| n.begins_operand() && !n.leads_line && !is_item_word(n.text(text))),
+        (_, "%") => {
+            next.is_some_and(|n| n.begins_operand() && !n.leads_line && !ITEM_WORDS.contains(&n.text(text)))
+        }
         ("-" | "!", _) if is_sign(second, before) => false,
         _ => true,
     }
@@ -219,12 +203,4 @@ fn begins_only(word: &str) -> bool {
         "as", "fn", "for",
     ];
     WORDS.contains(&word)
-}
-
-fn is_item_word(word: &str) -> bool {
-    [
-        "let", "draw", "print", "expect", "param", "material", "camera", "light", "render", "units",
-        "import", "fn",
-    ]
-    .contains(&word)
 }

@@ -102,15 +102,7 @@ impl Reader<'_, '_> {
                 .help("both of two: `max(f, g) <= 0`; any of two: `min(f, g) <= 0`")
                 .into());
         }
-        let condition = self.machine.located(asked)?;
-        match condition.value {
-            Val::Bool(true) => self.term(then),
-            Val::Bool(false) => self.term(otherwise),
-            _ => Err(condition
-                .unlike("if", "a condition")
-                .help("compare something: `if n > 3 { ... }`")
-                .into()),
-        }
+        if self.machine.condition(asked)? { self.term(then) } else { self.term(otherwise) }
     }
 }
 

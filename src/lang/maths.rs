@@ -2,7 +2,7 @@
 
 use super::args::{Bound, Formal};
 use super::ast::AngleUnit;
-use super::builtins::Builtin;
+use super::builtins::{Builtin, line};
 use super::units;
 use super::value::{Eval, Located, Val};
 use crate::diag::Diagnostic;
@@ -15,15 +15,6 @@ const CLAMP: &[Formal] = &[Formal::place("x"), Formal::place("lo"), Formal::plac
 const MIX: &[Formal] = &[Formal::place("a"), Formal::place("b"), Formal::place("t")];
 const YX: &[Formal] = &[Formal::place("y"), Formal::place("x")];
 const RGB: &[Formal] = &[Formal::place("r"), Formal::place("g"), Formal::place("b")];
-
-const fn line(
-    name: &'static str,
-    formals: &'static [Formal<'static>],
-    doc: &'static str,
-    call: fn(&Bound) -> Eval<Val>,
-) -> Builtin {
-    Builtin { name, formals, doc, call }
-}
 
 /// The functions.
 pub const TABLE: &[Builtin] = &[

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::args::{Bound, Formal};
-use super::builtins::Builtin;
+use super::builtins::{Builtin, line};
 use super::value::{Eval, List, Located, Record, Val};
 use crate::diag::Diagnostic;
 use crate::geom::Aabb;
@@ -72,15 +72,6 @@ pub trait Geometry {
 const SHAPE: &[Formal] = &[Formal::place("shape")];
 const POINT: &[Formal] = &[Formal::place("shape"), Formal::place("point")];
 const RAY: &[Formal] = &[Formal::place("shape"), Formal::named("from"), Formal::named("dir")];
-
-const fn line(
-    name: &'static str,
-    formals: &'static [Formal<'static>],
-    doc: &'static str,
-    call: fn(&Bound) -> Eval<Val>,
-) -> Builtin {
-    Builtin { name, formals, doc, call }
-}
 
 /// The functions.
 pub const TABLE: &[Builtin] = &[
