@@ -12,13 +12,31 @@ const MOST: usize = 8;
 const MOST_OF_COARSE: usize = 32;
 
 /// Leaves of an object that rays of a beam may meet.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Bundle {
     /// `None` where they are too many to be kept.
     leaves: Option<Vec<u32>>,
+    /// Which they are of an object that has a handful in all, as bits.
+    pub(super) slots: u64,
+}
+
+impl Default for Bundle {
+    fn default() -> Bundle {
+        Bundle { leaves: None, slots: u64::MAX }
+    }
 }
 
 impl Bundle {
+    fn new(core: &Core, leaves: Option<Vec<u32>>) -> Bundle {
+        let slots = core.handful.as_ref().zip(leaves.as_ref()).map(|(handful, list)| handful.slots_of(list));
+        Bundle { leaves, slots: slots.unwrap_or(u64::MAX) }
+    }
+
+    /// Whether all leaves may be met, also behind the origin.
+    pub(super) fn is_of_all(&self) -> bool {
+        self.leaves.is_none()
+    }
+
     /// They, where they are so few, all of closed form, that each ray shall ask them all.
     #[inline]
     pub(super) fn few(&self, core: &Core) -> Option<&[u32]> {
@@ -30,7 +48,7 @@ impl Bundle {
 impl Object {
     /// The leaves that rays of a beam may meet.
     pub fn bundle(&self, beam: &Beam) -> Bundle {
-        Bundle { leaves: touched(&self.core().hierarchy, beam) }
+        Bundle::new(self.core(), touched(&self.core().hierarchy, beam))
     }
 
     /// The same for a beam within that of a bundle.
@@ -39,7 +57,7 @@ impl Object {
         let hierarchy = &self.core().hierarchy;
         let grow = hierarchy.grow(beam.origin);
         let met = |leaf: &u32| !beam.misses(&hierarchy.boxes[*leaf as usize], grow);
-        Bundle { leaves: Some(leaves.iter().copied().filter(met).collect()) }
+        Bundle::new(self.core(), Some(leaves.iter().copied().filter(met).collect()))
     }
 }
 

@@ -7,16 +7,17 @@
 //! closed forms takes a twentieth fewer instructions so.
 
 use super::bundle::Bundle;
+use super::handful::chord;
 use super::object::{Core, Scratch};
 use super::room::Room;
-use super::slots::{All, Few, Turn};
+use super::slots::{Few, Turn};
 use super::spans::Boundary;
 use super::truth::Truth;
 use super::walk::Sight;
 use glam::DVec3;
 
 use crate::geom::{Interval, Ray, tolerance};
-use crate::solid::{self, Chord, Cost};
+use crate::solid::{self, Cost};
 
 /// What a look finds out.
 enum Found<T> {
@@ -47,8 +48,6 @@ pub(super) struct Look<'a> {
 enum Truths {
     /// Not known yet.
     Sought,
-    /// From this table of all states.
-    Whole(u64),
     /// From one of the room's, as far as that knows.
     Table(usize),
     /// From the room's state alone.
@@ -81,17 +80,9 @@ impl<'a> Look<'a> {
             look.room.walk.begin_at_end();
             return few.iter().all(|leaf| look.take(*leaf)).then_some(look);
         }
-        match &core.few {
-            Some(all) => {
-                look.truths = Truths::Whole(all.root);
-                look.take_all(all).then_some(look)
-            }
-            None => {
-                let Room { few, walk, .. } = &mut *look.room;
-                walk.begin(&core.hierarchy, ray, range, |sight, leaf| show(core, few, sight, leaf));
-                look.take_shown().then_some(look)
-            }
-        }
+        let Room { few, walk, .. } = &mut *look.room;
+        walk.begin(&core.hierarchy, ray, range, |sight, leaf| show(core, few, sight, leaf));
+        look.take_shown().then_some(look)
     }
 
     /// The first boundary in the range, and whether the ray goes in there; `None` where the long way has to tell.
@@ -175,42 +166,16 @@ impl<'a> Look<'a> {
     /// Asks a leaf and puts its crossings in order; false where there is no room. One that the line passes by needs none.
     #[inline(always)]
     fn take(&mut self, leaf: u32) -> bool {
-        match self.chord(leaf) {
+        match chord(self.core, leaf, self.ray, self.scratch) {
             Some(chord) if chord.is_none() => true,
             Some(chord) => self.room.few.keep(leaf, &chord),
             None => false,
         }
     }
 
-    /// Asks all leaves of an object that has few, each in a place of its own, until one that it needs is passed by.
-    #[inline(always)]
-    fn take_all(&mut self, all: &All) -> bool {
-        for (slot, leaf) in all.leaves().iter().enumerate() {
-            let Some(chord) = self.chord(*leaf) else { return false };
-            if slot < all.needed && chord.is_none() {
-                self.room.few.pass_by();
-                return true;
-            }
-            if !self.room.few.keep(*leaf, &chord) {
-                return false;
-            }
-        }
-        true
-    }
-
-    #[inline(always)]
-    fn chord(&mut self, leaf: u32) -> Option<Chord> {
-        let own = &self.core.tree.leaves()[leaf as usize];
-        let mut moved = None;
-        own.chord(own.place.local_ray(self.ray, &mut moved), self.scratch)
-    }
-
     /// Whether it is inside where these leaves are.
     #[inline(always)]
     fn inside(&mut self, mask: u64) -> bool {
-        if let Truths::Whole(root) = self.truths {
-            return root >> mask & 1 == 1;
-        }
         if mask == 0 {
             return self.core.outside.root() == Truth::Yes;
         }
@@ -219,7 +184,7 @@ impl<'a> Look<'a> {
         }
         let table = match self.truths {
             Truths::Table(table) => table,
-            Truths::Whole(_) | Truths::State | Truths::Sought => return self.inside_by_state(mask),
+            Truths::State | Truths::Sought => return self.inside_by_state(mask),
         };
         if let Some(told) = self.room.few.told(table, mask) {
             return told;

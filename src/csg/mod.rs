@@ -8,6 +8,7 @@ mod convex;
 mod expr;
 mod few;
 mod group;
+mod handful;
 mod hierarchy;
 mod leaf;
 mod object;

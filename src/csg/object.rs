@@ -8,11 +8,11 @@ use super::cleanup::{Bound, Cleaner};
 use super::convex::Convex;
 use super::expr::Expr;
 use super::few::Look;
+use super::handful::Handful;
 use super::hierarchy::{Hierarchy, worst_condition};
 use super::leaf::{Key, Leaf};
 use super::reach::{bounds_of_nodes, reaches};
 use super::room::Room;
-use super::slots::All;
 use super::spans::{Boundary, Spans};
 use super::sweep::Sweep;
 use super::tree::Tree;
@@ -41,7 +41,7 @@ pub(super) struct Core {
     /// For each leaf what asking it costs.
     pub costs: Vec<Cost>,
     /// All leaves, where they are few and of closed form.
-    pub few: Option<All>,
+    pub handful: Option<Handful>,
     /// What the object is where it is the intersection of more leaves.
     convex: Option<Convex>,
     /// For each leaf [`Leaf::scale`].
@@ -80,8 +80,8 @@ impl Core {
         let bounds = if bounds.is_finite() { bounds } else { Aabb::ALL };
         let reaches = reaches(&tree);
         let outside = State::outside(&tree);
-        let few = All::new(&tree, &costs, &reaches, &outside);
-        let convex = if few.is_none() { Convex::new(&tree, &costs, expr) } else { None };
+        let handful = Handful::new(&tree, &costs, &reaches, &outside);
+        let convex = if handful.is_none() { Convex::new(&tree, &costs, expr) } else { None };
         let hierarchy = Hierarchy::new(reaches, condition);
         let id = NEXT.fetch_add(1, Ordering::Relaxed);
         Core {
@@ -90,7 +90,7 @@ impl Core {
             hierarchy,
             outside,
             costs,
-            few,
+            handful,
             convex,
             scales,
             bound,
@@ -226,7 +226,12 @@ impl Object {
         range: Interval,
         scratch: &mut Scratch,
     ) -> Option<(Boundary, bool)> {
-        debug_assert!(0.0 <= range.lo || bundle.few(&self.core).is_none());
+        debug_assert!(0.0 <= range.lo || bundle.is_of_all());
+        if let Some(handful) = &self.core.handful
+            && let Some(found) = handful.first(&self.core, bundle.slots, ray, range, scratch)
+        {
+            return found;
+        }
         if let Some(convex) = &self.core.convex
             && let Some(found) = convex.first(&self.core, ray, range, scratch)
         {
@@ -242,6 +247,11 @@ impl Object {
     /// not resolve there ([`crate::solid::Solid::grain`]) does not count.
     #[inline]
     pub fn any(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> bool {
+        if let Some(handful) = &self.core.handful
+            && let Some(found) = handful.any(&self.core, u64::MAX, ray, range, scratch)
+        {
+            return found;
+        }
         if let Some(convex) = &self.core.convex
             && let Some(found) = convex.any(&self.core, ray, range, scratch)
         {

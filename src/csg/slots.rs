@@ -3,10 +3,8 @@
 
 use super::object::Core;
 use super::room::Room;
-use super::tree::Tree;
 use super::truth::{State, Truth};
-use crate::geom::Aabb;
-use crate::solid::{Chord, Cost, Crossing};
+use crate::solid::{Chord, Crossing};
 
 /// Of more leaves than this a first surface makes most needless, which the long way finds out.
 const FEW: usize = 16;
@@ -38,59 +36,6 @@ impl Table {
     fn is_of(&self, tree: u64, leaves: &[u32]) -> bool {
         self.tree == tree && &self.leaves[..self.count] == leaves
     }
-}
-
-/// All leaves of an object that has few, all of closed form: their boxes would spare less than they cost.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct All {
-    leaves: Leaves,
-    count: usize,
-    /// So many of the first have to be inside wherever the root is.
-    pub needed: usize,
-    /// Truth of the root for all states of them, as bits.
-    pub root: u64,
-}
-
-impl All {
-    /// `None` where there are too many, or others.
-    pub fn new(tree: &Tree, costs: &[Cost], reaches: &[Aabb], outside: &State) -> Option<All> {
-        let matter = || (0u32..).zip(reaches).filter(|(_, b)| !b.is_empty()).map(|(leaf, _)| leaf);
-        if matter().nth(IN_A_WORD).is_some() || matter().any(|leaf| costs[leaf as usize] != Cost::Closed) {
-            return None;
-        }
-        let count = matter().count();
-        let mut leaves: Leaves = std::array::from_fn(|slot| matter().nth(slot).unwrap_or_default());
-        let of = |leaves: &Leaves| truths(tree, outside, &leaves[..count], &mut outside.clone());
-        let (found, root) = (leaves, of(&leaves));
-        let is_needed = |leaf: &u32| {
-            let slot = found.iter().position(|other| other == leaf);
-            (0..1u64 << count).all(|mask| root >> mask & 1 == 0 || slot.is_some_and(|s| mask >> s & 1 == 1))
-        };
-        leaves[..count].sort_by_key(|leaf| !is_needed(leaf));
-        let needed = leaves[..count].iter().filter(|leaf| is_needed(leaf)).count();
-        Some(All { leaves, count, needed, root: of(&leaves) })
-    }
-
-    /// They, by their indices.
-    pub fn leaves(&self) -> &[u32] {
-        &self.leaves[..self.count]
-    }
-}
-
-/// Truth of the root for all states of some leaves, in an order in which one leaf changes at a time (Gray's).
-fn truths(tree: &Tree, outside: &State, leaves: &[u32], state: &mut State) -> u64 {
-    state.reset(tree, outside);
-    let mut root = 0;
-    for step in 0..1u64 << leaves.len() {
-        let mask = step ^ step >> 1;
-        if 0 < step {
-            let slot = step.trailing_zeros();
-            state.set(tree, leaves[slot as usize] as usize, Truth::known(mask >> slot & 1 == 1));
-        }
-        root |= u64::from(state.root() == Truth::Yes) << mask;
-    }
-    state.reset(tree, outside);
-    root
 }
 
 /// Neighbouring rays mostly meet the same leaves.
@@ -245,13 +190,7 @@ impl Few {
         self.shown.clear();
     }
 
-    /// Forgets all crossings: the line is outside.
-    #[inline]
-    pub fn pass_by(&mut self) {
-        (self.inside, self.hit_count) = (0, 0);
-    }
-
-    /// Makes a state that in which the leaves in these slots are inside.
+    /// Makes a state in which the leaves in these slots are inside.
     fn put(&self, core: &Core, mask: u64, state: &mut State) {
         state.reset(&core.tree, &core.outside);
         for slot in (0..self.count).filter(|slot| mask >> slot & 1 == 1) {
