@@ -31,6 +31,7 @@ pub mod film;
 pub mod geom;
 pub mod heights;
 pub mod lang;
+pub mod lsp;
 pub mod measure;
 pub mod mesh;
 pub mod mls;

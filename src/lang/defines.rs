@@ -43,7 +43,7 @@ pub fn unknown(defines: &[Define], known: &[&str]) -> Vec<Diagnostic> {
 }
 
 /// The types that a parameter can have.
-const TYPES: [&str; 8] = ["number", "int", "length", "angle", "color", "vector", "string", "bool"];
+pub const TYPES: [&str; 8] = ["number", "int", "length", "angle", "color", "vector", "string", "bool"];
 
 /// The value of a parameter.
 pub fn value(machine: &mut Machine, param: &Param, defines: &[Define]) -> Eval<Val> {

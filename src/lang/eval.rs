@@ -222,12 +222,12 @@ impl Machine<'_> {
                 }
                 Step::Method(word, args) => {
                     at = at.to(args.at);
-                    match member(&on, &word.text) {
+                    match member(&on, &word.text)? {
                         Some(Val::Function(closure)) => self.call_function(&closure, args, at)?,
                         _ => self.method(on, word, args)?,
                     }
                 }
-                Step::Member(word) => match member(&on, &word.text) {
+                Step::Member(word) => match member(&on, &word.text)? {
                     Some(value) => {
                         at = at.to(word.at);
                         value
@@ -404,15 +404,16 @@ fn no_member(on: &Located, word: &Word) -> Diagnostic {
 }
 
 /// A part of a vector or a record, or a name of a file.
-fn member(on: &Located, word: &str) -> Option<Val> {
-    match &on.value {
+fn member(on: &Located, word: &str) -> Eval<Option<Val>> {
+    Ok(match &on.value {
+        Val::Record(record) if record.failed.iter().any(|name| name == word) => return Err(Stop::Quiet),
         Val::Record(record) => record.get(word).cloned(),
         Val::List(_) => {
-            let axis = ["x", "y", "z", "w"].iter().position(|axis| *axis == word)?;
-            on.value.numbers()?.get(axis).map(|x| Val::Number(*x))
+            let axis = ["x", "y", "z", "w"].iter().position(|axis| *axis == word);
+            axis.and_then(|axis| on.value.numbers()?.get(axis).map(|x| Val::Number(*x)))
         }
         _ => None,
-    }
+    })
 }
 
 fn element(on: &Located, index: &Located) -> Eval<Val> {

@@ -19,6 +19,9 @@ use crate::source::{FileId, SourceMap, Span};
 /// The largest file that is read.
 const MAX_BYTES: usize = 256 << 20;
 
+/// The words that may stand before `draw`, with their `@`.
+pub const ATTRIBUTES: [&str; 3] = ["ghost", "only", "skip"];
+
 /// What a scene, or the failure to read it, comes to.
 pub type Outcome = Result<Read, Vec<Diagnostic>>;
 
@@ -147,6 +150,15 @@ fn twice(what: &str, at: Span, first: Span) -> Diagnostic {
         .help("a scene has one: remove the other")
 }
 
+/// The name space of a file.
+fn space_of(names: Vec<(String, Option<Val>)>) -> Record {
+    let failed = names.iter().filter(|(_, value)| value.is_none()).map(|(name, _)| name.clone()).collect();
+    let fields = names.into_iter().filter_map(|(name, value)| Some((name, value?)));
+    let mut fields: Vec<(String, Val)> = fields.collect();
+    fields.sort_by(|a, b| a.0.cmp(&b.0));
+    Record { kind: "an imported file", fields, failed }
+}
+
 struct Reader<'a> {
     machine: Machine<'a>,
     defines: &'a [Define],
@@ -201,10 +213,7 @@ impl Reader<'_> {
             let names: Vec<(String, Option<Val>)> = names.collect();
             match &import.space {
                 Some(space) => {
-                    let fields = names.into_iter().filter_map(|(name, value)| Some((name, value?)));
-                    let mut fields: Vec<(String, Val)> = fields.collect();
-                    fields.sort_by(|a, b| a.0.cmp(&b.0));
-                    let record = Record { kind: "an imported file", fields };
+                    let record = space_of(names);
                     self.machine.names[k].insert(space.text.clone(), Some(Val::Record(Arc::new(record))));
                 }
                 None => self.machine.names[k].extend(names),
@@ -350,7 +359,7 @@ impl Reader<'_> {
                     let error = Diagnostic::error("E0401", format!("`@{other}` is not known"));
                     return Err(error
                         .at(word.at, "unknown attribute")
-                        .help(match nearest(other, ["ghost", "only", "skip"]) {
+                        .help(match nearest(other, ATTRIBUTES) {
                             Some(near) => format!("did you mean `@{near}`?"),
                             None => "the attributes are `@ghost` `@only` `@skip`".to_owned(),
                         })

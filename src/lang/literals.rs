@@ -2,7 +2,7 @@
 
 use super::ast::ExprKind;
 use super::value::MAX_NUMBER;
-use super::{scan, syntax, units};
+use super::{keywords, scan, units};
 use crate::diag::{Diagnostic, nearest};
 use crate::source::Span;
 
@@ -27,7 +27,7 @@ pub fn number(text: &str, at: Span) -> Result<ExprKind, Box<Diagnostic>> {
     }
     let listed = units::names().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(" ");
     let help = match nearest(name, units::names()) {
-        _ if name == "pi" || name == "tau" || syntax::KEYWORDS.contains(&name) => spaced(digits, name),
+        _ if name == "pi" || name == "tau" || keywords::is_keyword(name) => spaced(digits, name),
         Some(known) => format!("did you mean `{digits}{known}`?"),
         None if name.starts_with('_') => "digits stand together: `1000`".to_owned(),
         None => format!("the units are {listed}; for a product write `{digits} * {name}`"),

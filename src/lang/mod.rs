@@ -21,6 +21,7 @@ mod functions;
 mod habits;
 mod half_space;
 mod items;
+mod keywords;
 mod lists;
 mod literals;
 mod maths;
@@ -48,7 +49,14 @@ use crate::diag::Diagnostic;
 use crate::scene::{Catalog, Scene};
 use crate::source::{FileId, SourceMap, Span};
 
+pub(crate) use defines::TYPES;
+pub(crate) use items::ATTRIBUTES;
+pub(crate) use keywords::is_keyword;
+pub(crate) use literals::text as unquoted;
 pub use queries::{Answer, Asked, Geometry, Measured, RayHit};
+pub(crate) use scan::{Token, TokenKind, tokens};
+pub(crate) use split::ITEM_WORDS;
+pub(crate) use units::LENGTHS;
 
 /// Stack for the deepest nesting allowed, with room to spare; only what is used is ever touched.
 const STACK_BYTES: usize = 256 << 20;
@@ -125,6 +133,11 @@ pub fn read_with(sources: &mut SourceMap, file: FileId, reading: &Reading) -> Re
 /// The items of a text as they were written, each with its place; or every mistake in their wording.
 pub fn items(sources: &SourceMap, file: FileId) -> Result<Vec<ast::Item>, Vec<Diagnostic>> {
     stacker::grow(STACK_BYTES, || items::parsed(&sources.file(file).text, file))
+}
+
+/// Bytes of all items of a text, those that cannot be read among them; each ends where the next begins.
+pub(crate) fn item_ranges(text: &str) -> Vec<Range<usize>> {
+    split::cut(text, FileId::default()).all
 }
 
 /// A text in the house style; every mistake in its wording, where there are some.

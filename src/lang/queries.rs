@@ -141,7 +141,7 @@ fn bounds(bound: &Bound) -> Eval<Val> {
     let vector = |v: DVec3| Val::vector(v.to_array(), bound.callee.at);
     let fields = [("min", found.min), ("max", found.max), ("size", found.size()), ("center", found.center())];
     let fields = fields.map(|(name, v)| (name.to_owned(), vector(v)));
-    Ok(Val::Record(Arc::new(Record { kind: "bounds", fields: fields.into() })))
+    Ok(Val::Record(Arc::new(Record { kind: "bounds", fields: fields.into(), failed: Vec::new() })))
 }
 
 fn raycast(bound: &Bound) -> Eval<Val> {
@@ -161,7 +161,10 @@ fn raycast(bound: &Bound) -> Eval<Val> {
             ("normal".to_owned(), Val::vector(hit.normal.to_array(), at)),
             ("entering".to_owned(), Val::Bool(hit.entering)),
         ];
-        Located { value: Val::Record(Arc::new(Record { kind: "a crossing", fields })), at }
+        Located {
+            value: Val::Record(Arc::new(Record { kind: "a crossing", fields, failed: Vec::new() })),
+            at,
+        }
     };
     List::value(hits.into_iter().map(record).collect(), at)
 }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::args::{self, Formal};
 use super::builtins::{self, Builtin};
+use super::keywords::KEYWORDS;
 use crate::scene::{Catalog, Group};
 
 /// A word of the language.
@@ -19,13 +20,15 @@ pub struct Word {
     pub doc: &'static str,
     /// Its arguments: the name, what it must be, what it is.
     pub args: Vec<[String; 3]>,
+    /// The names of all its arguments.
+    pub names: Vec<String>,
     /// A call that works; empty where there is none.
     pub example: &'static str,
 }
 
 /// The chapters, in order.
-pub const CHAPTERS: [&str; 6] =
-    ["Solids and sheets", "Methods", "Functions", "Constants", "Materials", "Items"];
+pub const CHAPTERS: [&str; 7] =
+    ["Solids and sheets", "Methods", "Functions", "Constants", "Materials", "Items", "Keywords"];
 
 /// All words, chapter by chapter.
 pub fn words(catalog: &Catalog) -> Vec<Word> {
@@ -42,22 +45,30 @@ pub fn words(catalog: &Catalog) -> Vec<Word> {
             call: args::signature(decl.word, &formals),
             doc: decl.doc,
             args: decl.params.iter().map(arg).collect(),
+            names: names(&formals),
             example: decl.example,
         }
     });
     let methods = builtins::METHODS.iter().map(|b| builtin(b, CHAPTERS[1], "."));
     let functions = builtins::functions().map(|b| builtin(b, CHAPTERS[2], ""));
-    let constants = builtins::CONSTANTS.iter().map(|(name, _, doc)| Word {
-        name: (*name).to_owned(),
-        chapter: CHAPTERS[3],
-        call: (*name).to_owned(),
-        doc,
-        args: Vec::new(),
-        example: "",
-    });
-    let mut all: Vec<Word> = declared.chain(methods).chain(functions).chain(constants).collect();
+    let constants = builtins::CONSTANTS.iter().map(|(name, _, doc)| bare(name, CHAPTERS[3], name, doc));
+    // The arguments of `camera`, `light` and `render` are declared.
+    let undeclared = KEYWORDS.iter().filter(|k| !catalog.decls.iter().any(|d| d.word == k.word));
+    let keywords = undeclared.map(|k| bare(k.word, CHAPTERS[6], k.usage, k.doc));
+    let mut all: Vec<Word> =
+        declared.chain(methods).chain(functions).chain(constants).chain(keywords).collect();
     all.sort_by_key(|word| CHAPTERS.iter().position(|chapter| *chapter == word.chapter));
     all
+}
+
+fn names(formals: &[Formal]) -> Vec<String> {
+    formals.iter().map(|f| f.name.to_owned()).collect()
+}
+
+/// A word without arguments.
+fn bare(name: &str, chapter: &'static str, call: &str, doc: &'static str) -> Word {
+    let (name, call) = (name.to_owned(), call.to_owned());
+    Word { name, chapter, call, doc, args: Vec::new(), names: Vec::new(), example: "" }
 }
 
 fn builtin(b: &Builtin, chapter: &'static str, before: &str) -> Word {
@@ -71,11 +82,25 @@ fn builtin(b: &Builtin, chapter: &'static str, before: &str) -> Word {
         call: format!("{before}{}", args::signature(b.name, b.formals)),
         doc: b.doc,
         args: b.formals.iter().filter(|f| !f.required).map(arg).collect(),
+        names: names(b.formals),
         example: "",
     }
 }
 
 impl Word {
+    /// What stands below its call, in Markdown: the sentence, the arguments, the example.
+    pub fn markdown(&self) -> String {
+        let mut out = format!("{}\n\n", self.doc);
+        for [name, kind, doc] in &self.args {
+            let sign = if doc.is_empty() { "" } else { ": " };
+            let _ = writeln!(out, "- `{name}`: {kind}{sign}{doc}");
+        }
+        if !self.example.is_empty() {
+            let _ = writeln!(out, "\n```pss\n{}\n```", self.example);
+        }
+        out
+    }
+
     /// All that is known of it, as text.
     pub fn page(&self) -> String {
         let mut out = format!("{}\n\n    {}\n", self.call, self.doc);
@@ -103,14 +128,7 @@ pub fn page(catalog: &Catalog) -> String {
     for chapter in CHAPTERS {
         let _ = writeln!(out, "\n## {chapter}\n");
         for word in words.iter().filter(|word| word.chapter == chapter) {
-            let _ = writeln!(out, "### `{}`\n\n{}\n", word.call, word.doc);
-            for [name, kind, doc] in &word.args {
-                let sign = if doc.is_empty() { "" } else { ": " };
-                let _ = writeln!(out, "- `{name}`: {kind}{sign}{doc}");
-            }
-            if !word.example.is_empty() {
-                let _ = writeln!(out, "\n```pss\n{}\n```", word.example);
-            }
+            let _ = write!(out, "### `{}`\n\n{}", word.call, word.markdown());
             if !word.args.is_empty() || !word.example.is_empty() {
                 out.push('\n');
             }

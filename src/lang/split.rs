@@ -22,6 +22,8 @@ pub const MAX_NESTING: usize = 1000;
 pub struct Cut {
     /// Bytes of the items that are worth parsing.
     pub items: Vec<Range<usize>>,
+    /// Bytes of all items.
+    pub all: Vec<Range<usize>>,
     /// What is wrong with the others.
     pub errors: Vec<Diagnostic>,
 }
@@ -36,7 +38,7 @@ pub fn cut(text: &str, file: FileId) -> Cut {
         open: Vec::new(),
         item: None,
         in_attributes: false,
-        out: Cut { items: Vec::new(), errors: Vec::new() },
+        out: Cut { items: Vec::new(), all: Vec::new(), errors: Vec::new() },
     };
     for i in 0..tokens.len() {
         cutter.take(i);
@@ -48,7 +50,7 @@ pub fn cut(text: &str, file: FileId) -> Cut {
         let error = Diagnostic::error("E0701", told)
             .at(span(file, at), "this is too deep")
             .help("name the inner parts with `let`, or list the operands, as in `union([a, b])`");
-        out = Cut { items: Vec::new(), errors: vec![error] };
+        out = Cut { items: Vec::new(), all: Vec::new(), errors: vec![error] };
     }
     out
 }
@@ -131,11 +133,12 @@ impl Cutter<'_> {
     }
 
     fn close_item(&mut self, end: usize) {
-        if let Some(item) = self.item.take()
-            && item.sound
-        {
-            let start = self.tokens[item.start].range.start;
-            self.out.items.push(start..end);
+        if let Some(item) = self.item.take() {
+            let range = self.tokens[item.start].range.start..end;
+            if item.sound {
+                self.out.items.push(range.clone());
+            }
+            self.out.all.push(range);
         }
     }
 

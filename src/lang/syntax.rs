@@ -1,17 +1,12 @@
 //! What to say where an item stops being one: the token that does not fit, what would, and the slip that is
 //! the likely cause. The grammar's own words are never shown.
 
+use super::keywords::{self, usage};
 use super::scan::{Token, TokenKind, tokens};
 use super::split::{ITEM_WORDS, not_an_item};
 use super::{span, units};
 use crate::diag::Diagnostic;
 use crate::source::{FileId, Span};
-
-/// Words that cannot be names.
-pub const KEYWORDS: [&str; 24] = [
-    "let", "fn", "param", "import", "material", "camera", "light", "render", "units", "draw", "print",
-    "expect", "if", "else", "for", "in", "is", "or", "and", "not", "true", "false", "within", "as",
-];
 
 /// An item that the grammar refused at byte `stop` of `text`.
 pub struct Refused<'a> {
@@ -74,25 +69,6 @@ impl Refused<'_> {
     }
 }
 
-/// How an item is written.
-fn usage(item: &str) -> &'static str {
-    match item {
-        "let" => "`let name = value`",
-        "fn" => "`fn name(parameters) = value`",
-        "param" => "`param name: type = default in lowest..highest \"description\"`",
-        "import" => "`import \"file.pss\" as name`",
-        "material" => "`material name(kind: \"matte\", color: #ffffff)`",
-        "camera" => "`camera name(eye: [x, y, z], look_at: [x, y, z])`",
-        "light" => "`light name(direction: [x, y, z])`",
-        "render" => "`render(size: [width, height])`",
-        "units" => "`units(mm)`",
-        "draw" | "@" => "`draw shape`",
-        "print" => "`print value`",
-        "expect" => "`expect condition`",
-        _ => "a value",
-    }
-}
-
 /// The innermost bracket left open.
 fn innermost(before: &[Token]) -> Option<(&Token, usize)> {
     let mut open = Vec::new();
@@ -113,7 +89,7 @@ fn header(item: &str, all: &[Token], i: usize, refused: &Refused, at: Span) -> O
     if i == 1 && matches!(item, "let" | "fn" | "param" | "material") {
         let error = Diagnostic::error("E0101", format!("expected a name after `{item}`{shown}"));
         let help = match found {
-            Some(word) if KEYWORDS.contains(&word) => format!("`{word}` is a keyword: take another name"),
+            Some(word) if keywords::is_keyword(word) => format!("`{word}` is a keyword: take another name"),
             _ => format!("write {}", usage(item)),
         };
         return Some(error.at(at, "not a name").help(help));
@@ -332,7 +308,7 @@ impl Slip<'_> {
         if after == "." {
             return error.help("after `.` stands the name of a method");
         }
-        if KEYWORDS.contains(&word) && !ITEM_WORDS.contains(&word) {
+        if keywords::is_keyword(word) && !ITEM_WORDS.contains(&word) {
             return error.help(format!(
                 "`{shown}` is a keyword; to use it inside a value, put parentheses around it"
             ));

@@ -73,6 +73,8 @@ pub struct Record {
     pub kind: &'static str,
     /// The values with their names.
     pub fields: Vec<(String, Val)>,
+    /// Names whose values failed: what is wrong is told where they are defined.
+    pub failed: Vec<String>,
 }
 
 impl Record {

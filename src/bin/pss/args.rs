@@ -36,6 +36,8 @@ pub enum Command {
     Test(TestArgs),
     /// Say what a word of the language, or the code of a message, means; without one, list all words
     Explain(ExplainArgs),
+    /// Serve an editor: diagnostics, hover, completion, definitions, formatting
+    Lsp(LspArgs),
     /// Say what a cloud of points is like, or convert it
     #[command(subcommand)]
     Cloud(CloudCommand),
@@ -99,6 +101,17 @@ pub struct ExplainArgs {
     /// How messages look on standard error
     #[arg(long, value_enum, default_value_t = MessageFormat::Text)]
     pub format: MessageFormat,
+}
+
+/// Arguments of `lsp`.
+#[derive(Group, Debug)]
+pub struct LspArgs {
+    /// On standard input and output, the only way there is
+    #[arg(long)]
+    pub stdio: bool,
+    /// Let scenes import files below this folder too
+    #[arg(long, value_name = "DIR")]
+    pub allow_read: Vec<PathBuf>,
 }
 
 /// Arguments of `cloud info`.
@@ -169,6 +182,7 @@ impl Command {
             Command::Fmt(FmtArgs { format, .. }) | Command::Explain(ExplainArgs { format, .. }) => {
                 CloudArgs { threads: 0, format: *format, lenient: false }
             }
+            Command::Lsp(_) => CloudArgs { threads: 0, format: MessageFormat::Text, lenient: false },
             Command::Cloud(CloudCommand::Info(args)) => args.common,
             Command::Cloud(CloudCommand::Convert(args)) => args.common,
         }

@@ -16,7 +16,7 @@ use crate::args::{ReadArgs, cut};
 use crate::console::{Console, Failure};
 
 /// The longest scene, bytes: parsing takes some seventy times as much memory.
-const MAX_SCENE: u64 = 16 << 20;
+pub const MAX_SCENE: u64 = 16 << 20;
 
 /// A scene ready to trace.
 #[derive(Debug)]

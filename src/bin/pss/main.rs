@@ -9,6 +9,7 @@ mod dump;
 mod explain;
 mod fmt;
 mod load;
+mod lsp;
 mod probe;
 mod progress;
 mod render;
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
             Command::Dump(args) => dump::run(args, &console).map(|()| 0),
             Command::Test(args) => test::run(args, &console),
             Command::Explain(args) => explain::run(args).map(|()| 0),
+            Command::Lsp(args) => lsp::run(args),
             Command::Cloud(command) => cloud::run(command, &console).map(|()| 0),
         }
     });
