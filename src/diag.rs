@@ -1,7 +1,7 @@
 //! Diagnostics: what is wrong with something a user wrote, where, and the way out. One type with three
 //! readers: the terminal, `--format json`, and editors. How it is printed is left to [`crate::report`].
 
-use crate::source::Span;
+use crate::source::{FileId, Span};
 
 /// How much a diagnostic weighs.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, PartialOrd, Ord)]
@@ -58,6 +58,15 @@ pub struct Label {
     pub text: String,
 }
 
+/// What may be written instead of a part of a text, so that a program can mend it.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Fix {
+    /// What is replaced; empty where something is put in.
+    pub span: Span,
+    /// By what.
+    pub text: String,
+}
+
 /// Something to tell the user.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Diagnostic {
@@ -70,7 +79,9 @@ pub struct Diagnostic {
     /// The first is where it is; the others help to understand it. Empty where there is no place.
     pub labels: Vec<Label>,
     /// The way out.
-    pub help: Option<String>,
+    pub help: Option<Box<str>>,
+    /// The way out as an edit, where there is one way and no word of the user's is missing in it.
+    pub fix: Option<Box<Fix>>,
     /// Facts beside the matter.
     pub notes: Vec<String>,
     /// The kind of failure; of no meaning for a warning.
@@ -86,6 +97,7 @@ impl Diagnostic {
             message: message.into(),
             labels: Vec::new(),
             help: None,
+            fix: None,
             notes: Vec::new(),
             fault: Fault::Input,
         }
@@ -104,8 +116,22 @@ impl Diagnostic {
 
     /// Sets the way out.
     pub fn help(mut self, help: impl Into<String>) -> Diagnostic {
-        self.help = Some(help.into());
+        self.help = Some(help.into().into());
         self
+    }
+
+    /// Sets the way out as an edit.
+    pub fn fix(mut self, span: Span, text: impl Into<String>) -> Diagnostic {
+        self.fix = Some(Box::new(Fix { span, text: text.into() }));
+        self
+    }
+
+    /// The same with a word that may be none.
+    pub fn fix_with(self, span: Span, word: Option<&str>) -> Diagnostic {
+        match word {
+            Some(word) => self.fix(span, word),
+            None => self,
+        }
     }
 
     /// Adds a fact.
@@ -126,31 +152,36 @@ impl Diagnostic {
     }
 }
 
-/// The known name nearest to `name`, for "did you mean": at most a third of its letters wrong (Levenshtein
-/// distance, the first of several).
+/// A text with the fixes of diagnostics in it: those of this file that do not touch each other, the earlier first. How many there
+/// were stands beside it.
+pub fn mended(text: &str, file: FileId, diagnostics: &[Diagnostic]) -> (String, usize) {
+    let mut fixes: Vec<&Fix> = diagnostics.iter().filter_map(|d| d.fix.as_deref()).collect();
+    fixes.retain(|fix| fix.span.file == file);
+    fixes.sort_by_key(|fix| (fix.span.start, fix.span.end));
+    let (mut out, mut done, mut count) = (String::with_capacity(text.len()), 0, 0);
+    for fix in fixes {
+        let (start, end) = (fix.span.start as usize, fix.span.end as usize);
+        let touches = count > 0 && start <= done;
+        if let (false, Some(kept)) = (touches || end < start, text.get(done..start)) {
+            out.push_str(kept);
+            out.push_str(&fix.text);
+            (done, count) = (end, count + 1);
+        }
+    }
+    out.push_str(text.get(done..).unwrap_or_default());
+    (out, count)
+}
+
+/// The known name nearest to `name`, for "did you mean": at most a third of its letters wrong, missing,
+/// too many or in each other's place (optimal string alignment), the first of several.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = (name.chars().count() / 3).max(1);
     known
         .into_iter()
-        .map(|k| (distance(name, k), k))
+        .map(|k| (strsim::osa_distance(name, k), k))
         .filter(|(d, _)| *d <= limit)
         .min_by_key(|(d, _)| *d)
         .map(|(_, k)| k)
-}
-
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, ca) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, cb) in b.iter().enumerate() {
-            let substituted = diagonal + usize::from(ca != *cb);
-            diagonal = row[j + 1];
-            row[j + 1] = substituted.min(row[j] + 1).min(row[j + 1] + 1);
-        }
-    }
-    row[b.len()]
 }
 
 #[cfg(test)]
@@ -162,6 +193,7 @@ mod tests {
         let known = ["sphere", "box", "cylinder"];
         assert_eq!(nearest("shpere", known), Some("sphere"));
         assert_eq!(nearest("bux", known), Some("box"));
+        assert_eq!(nearest("obx", known), Some("box"));
         assert_eq!(nearest("torus", known), None);
     }
 }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use annotate_snippets::{Annotation, AnnotationKind, Group, Level, Renderer, Snippet};
 use serde::Serialize;
 
-use crate::diag::{Diagnostic, Label, Severity};
+use crate::diag::{Diagnostic, Fix, Label, Severity};
 use crate::source::{FileId, SourceMap};
 
 /// Errors shown before the rest is only counted.
@@ -91,6 +91,18 @@ fn annotation<'a>(label: &'a Label, main: bool, text: &Visible) -> Annotation<'a
     if label.text.is_empty() { annotation } else { annotation.label(clean(&label.text)) }
 }
 
+/// What a scene prints, for the terminal: its line breaks and tabs stay, all else that is hidden becomes escapes.
+pub fn printable(text: &str) -> String {
+    text.chars().fold(String::new(), |mut out, c| {
+        if matches!(c, '\n' | '\t') {
+            out.push(c)
+        } else {
+            push_clean(&mut out, c)
+        }
+        out
+    })
+}
+
 /// A word for the terminal: control characters, and those that turn the direction of writing, as escapes.
 fn clean(text: &str) -> Cow<'_, str> {
     if !text.chars().any(is_hidden) {
@@ -173,7 +185,7 @@ impl Visible {
 }
 
 /// A diagnostic as one line of JSON, without the line's end. Lines and columns count from 1, columns count
-/// characters; they and the file are null where there is no place.
+/// characters; they and the file are null where there is no place. `fix` is there where an edit mends it.
 pub fn json_line(diagnostic: &Diagnostic, sources: &SourceMap) -> String {
     let place = diagnostic.labels.first().map(|l| l.span);
     let start = place.map(|s| sources.locate(s.file, s.start));
@@ -189,6 +201,7 @@ pub fn json_line(diagnostic: &Diagnostic, sources: &SourceMap) -> String {
         end_column: end.map(|l| l.column),
         help: diagnostic.help.as_deref(),
         notes: &diagnostic.notes,
+        fix: diagnostic.fix.as_deref().map(|fix| Edit::new(fix, sources)),
     };
     serde_json::to_string(&line).unwrap_or_default()
 }
@@ -206,4 +219,32 @@ struct Line<'a> {
     end_column: Option<usize>,
     help: Option<&'a str>,
     notes: &'a [String],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fix: Option<Edit<'a>>,
+}
+
+/// An edit that mends it: what stands between the places becomes the text.
+#[derive(Serialize)]
+struct Edit<'a> {
+    file: &'a str,
+    line: usize,
+    column: usize,
+    end_line: usize,
+    end_column: usize,
+    text: &'a str,
+}
+
+impl<'a> Edit<'a> {
+    fn new(fix: &'a Fix, sources: &'a SourceMap) -> Edit<'a> {
+        let Fix { span, text } = fix;
+        let (start, end) = (sources.locate(span.file, span.start), sources.locate(span.file, span.end));
+        Edit {
+            file: &sources.file(span.file).name,
+            line: start.line,
+            column: start.column,
+            end_line: end.line,
+            end_column: end.column,
+            text,
+        }
+    }
 }

@@ -64,6 +64,33 @@ fn dump_is_json_that_reads_back() {
     assert_eq!((items.len(), operands.len()), (4, 2));
 }
 
+/// Every scene of the project comes back from its JSON as it was, as items and as what they come to.
+#[test]
+fn every_scene_of_the_project_round_trips_through_json() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (folder, mut scenes) = (Folder::new(), 0);
+    for entry in ["scenes", "scenes/cookbook"].iter().flat_map(|f| std::fs::read_dir(root.join(f)).unwrap()) {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|e| e != "pss") {
+            continue;
+        }
+        scenes += 1;
+        let ran = folder.run(&["dump", "--json", path.to_str().unwrap()]);
+        assert_eq!(ran.code, 0, "{}: {}", path.display(), ran.stderr);
+        #[derive(serde::Serialize, serde::Deserialize)]
+        struct Dump {
+            version: u32,
+            items: Vec<pss::lang::ast::Item>,
+            scene: pss::scene::Scene,
+        }
+        let dump: Dump = serde_json::from_slice(&ran.stdout).unwrap();
+        let again = format!("{}\n", serde_json::to_string(&dump).unwrap());
+        assert!(again.as_bytes() == ran.stdout, "{}", path.display());
+        assert!(!dump.scene.draws.is_empty(), "{}", path.display());
+    }
+    assert!(30 <= scenes, "{scenes}");
+}
+
 #[test]
 fn expectations_are_evaluated_by_check_and_test_and_not_by_render() {
     let folder = Folder::new();
@@ -105,4 +132,55 @@ fn explain_prints_words_and_codes() {
     let ran = folder.run(&["explain", "bix"]);
     assert!(ran.code == 2 && ran.stderr.contains("did you mean `box`?"), "{}", ran.stderr);
     assert!(out(&folder.run(&["explain"])).lines().count() > 100);
+}
+
+#[test]
+fn check_fix_mends_the_file_and_json_tells_the_edit() {
+    let folder = Folder::new();
+    folder.write("a.pss", "// kept\ndraw spere(r: 1) + box(size: 1)\n");
+    let ran = folder.run(&["check", "--format", "json", "a.pss"]);
+    let told: serde_json::Value = serde_json::from_str(ran.stderr.lines().next().unwrap()).unwrap();
+    let edit = serde_json::json!({
+        "file": "a.pss", "line": 2, "column": 6, "end_line": 2, "end_column": 11, "text": "sphere"
+    });
+    assert_eq!((ran.code, &told["fix"]), (65, &edit));
+    let ran = folder.run(&["check", "--fix", "a.pss"]);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert!(ran.stderr.contains("2 edits made"), "{}", ran.stderr);
+    assert_eq!(text(&folder, "a.pss"), "// kept\ndraw sphere(r: 1) | box(size: 1)\n");
+    // Nothing to mend, and what cannot be.
+    assert_eq!(folder.run(&["check", "--fix", "a.pss"]).code, 0);
+    folder.write("b.pss", "draw sphere()\n");
+    assert_eq!(folder.run(&["check", "--fix", "b.pss"]).code, 65);
+    assert_eq!(text(&folder, "b.pss"), "draw sphere()\n");
+    assert_eq!(folder.run(&["check", "--fix", "-"]).code, 2);
+}
+
+/// `make` reads the rule: all that the picture is made from, and nothing else.
+#[test]
+fn deps_names_all_that_a_picture_is_made_from() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path().join("my scans")).unwrap();
+    folder.write("my scans/b.ply", cli_common::ply_with_normals(&cli_common::sphere(300, 1.0)));
+    folder.write("parts.pss", "fn peg(r) = sphere(r: r)\n");
+    folder.write(
+        "a.pss",
+        "import \"parts.pss\"\nlet unused = points(\"gone.ply\")\ndraw peg(1) | points(\"my scans/b.ply\")\n",
+    );
+    let args = ["render", "a.pss", "--size", "8x8", "-o", "a.png", "-o", "a.exr", "--deps", "a.d"];
+    let ran = folder.run(&args);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let rule = text(&folder, "a.d");
+    let (first, rest) = rule.split_once("\n\n").unwrap();
+    let (targets, needs) = first.split_once(": ").unwrap();
+    assert_eq!(targets, "a.png a.exr");
+    let mut needs: Vec<&str> = needs.split(" \\\n  ").collect();
+    needs.sort_unstable();
+    assert_eq!(needs, ["a.pss", "my\\ scans/b.ply", "parts.pss"]);
+    assert_eq!(rest.matches(":\n").count(), 3);
+    for wrong in [vec!["-o", "-"], vec!["-o", "a.d.png", "--stats-json", "a.d"]] {
+        let ran = folder.run(&[&["render", "a.pss", "--deps", "a.d"][..], &wrong].concat());
+        assert_eq!(ran.code, 2, "{}", ran.stderr);
+    }
+    assert_eq!(folder.run(&["render", "a.pss", "--deps", "parts.pss"]).code, 73);
 }

@@ -109,7 +109,7 @@ error[E0401]: `wegde` is not known
   |
 2 | draw wegde
   |      ^^^^^ unknown name
-  = help: define it: `let wegde = ...`
+  = help: did you mean `wedge`?
 "#
 }
 
@@ -157,7 +157,7 @@ error[E0408]: a shape has no method `mvoe`
   |
 1 | draw sphere(r: 1).mvoe([1, 0, 0])
   |                   ^^^^ unknown method
-  = help: the methods are `.move` `.rotate_x` `.rotate_y` `.rotate_z` `.rotate` `.scale` `.mirror` `.matrix` `.array` `.around` `.instance` `.fit` `.with` `.cut` `.close` `.thicken` `.inset` `.offset` `.clip`
+  = help: did you mean `.move`?
 "#
 }
 

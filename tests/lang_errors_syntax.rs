@@ -192,7 +192,7 @@ error[E0105]: `dge` is not a unit
   |
 1 | let a = 2dge
   |          ^^^ not a unit
-  = help: the units are `um` `mm` `cm` `m` `km` `in` `ft` `deg` `rad` `turn`; for a product write `2 * dge`
+  = help: did you mean `2deg`?
 "#
 }
 

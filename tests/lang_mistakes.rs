@@ -17,7 +17,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ("draw box([1, 2, 3])", "box([0, 0, 0], [1, 1, 1])"),
     ("draw box(size: [1, 2])", "[x, y, z]"),
     ("draw box(size: 1).translate([1, 0, 0])", ".move([x, y, z])"),
-    ("draw box(size: 1).rotate([0, 0, 45])", "rotate(axis:, by:"),
+    ("draw box(size: 1).rotate([0, 0, 45])", "rotate_x(90deg)"),
     ("draw box(size: 1).rotate_z(45)", "45deg"),
     ("draw cylinder(r1: 1, r2: 0, h: 3)", "cone(r1: 2, r2: 1, h: 3)"),
     ("draw cylinder(r: 1)", "cylinder(r: 1, h: 2)"),
@@ -81,6 +81,32 @@ const MISTAKES: &[(&str, &str)] = &[
     ("draw box(size: 1) - plane(z: 0)", "half_space(z < 0)"),
     ("draw spere(r: 1)", "`sphere`"),
     ("expect 1 < 2 < 3", "and"),
+    ("let a = 1\nprint(a, 3)", "`[a, b]`"),
+    ("let b = (1, 2)", "`[a, b]`"),
+    ("fn g(n) = for i in 0..n { sphere(r: 1), box(size: 1) }", "`a | b`"),
+    ("fn g(n) = for i in 0..n { sphere(r: 1) box(size: 1) }", "`a | b`"),
+    ("let c = { let a = 3, let b = 4\n    a + b }", "remove it"),
+    ("let c = [for i in 0..3, i]", "a loop is a list already"),
+    ("let c = [for i in 0..3 i]", "a loop is a list already"),
+    ("let c = for i in 0..3 i", "a loop is a list already"),
+    ("#sphere(r: 1)", "@ghost"),
+    ("%sphere(r: 1)", "@ghost"),
+    ("*sphere(r: 1)", "@skip"),
+    ("!sphere(r: 1)", "@only"),
+    ("fn hole(x) { sphere(r: x) }", "fn f(x) = {"),
+    ("draw hull() { sphere(r: 1) }", "no hull"),
+    ("let a = if 3 > 2 { 1 }", "else { c }"),
+    ("let v = [1, 2, 3]\nprint v.w", "`.x`"),
+    ("import(\"x.pss\")", "import \"file.pss\""),
+    ("draw sphere(r: 1).rotate([90, 0, 0])", "rotate_x(90deg)"),
+    ("draw difference(sphere(r: 2), box(size: 1), box(size: 2))", "difference(a, [b, c])"),
+    ("draw sphere(r: 2, $fn: 4)", "no `$fn`"),
+    ("let a = 0..=3", "one more"),
+    ("let a = for i in 0..30 step 10 { i }", "no steps"),
+    ("material m(color: red)", "#ff0000"),
+    ("draw text(\"abc\")", "no letters"),
+    ("draw cylinder(r: 1, h: 2, center: true)", ".move([x, y, z])"),
+    ("draw sphere(r: 5.)", "5.0"),
 ];
 
 /// What is said of a scene, by reading or preparing it, and how many errors that were.
@@ -111,4 +137,59 @@ fn each_typical_mistake_gives_one_error_that_names_the_repair() {
     }
     let known = std::fs::read_to_string(path).unwrap_or_default();
     assert!(known == page, "the texts changed: run with PSS_BLESS=1 and read the difference");
+}
+
+/// An edit that a message brings is right: with it, and those of the errors that come to light, the mistake is gone or another
+/// one is told that says what is missing; never the same once more.
+#[test]
+fn edits_mend_what_they_are_for() {
+    let mut mended = 0;
+    for (scene, _) in MISTAKES {
+        let (mut text, mut seen) = ((*scene).to_owned(), Vec::new());
+        loop {
+            let mut sources = SourceMap::default();
+            let file = sources.add("scene.pss", None, text.as_str());
+            let Err(errors) = pss::lang::read(&mut sources, file, &pss::prepare::catalog(), &[]) else {
+                mended += usize::from(!seen.is_empty());
+                break;
+            };
+            let told: Vec<String> = errors.iter().map(|e| e.message.clone()).collect();
+            assert!(!seen.contains(&told), "{scene}\n{text}\n{told:?}");
+            seen.push(told);
+            let (next, count) = pss::diag::mended(&text, file, &errors);
+            if count == 0 {
+                break;
+            }
+            text = next;
+        }
+    }
+    // Counted when the edits were written: fewer mean that one was lost.
+    assert!(20 <= mended, "{mended}");
+}
+
+#[test]
+fn edits_are_put_into_the_text() {
+    let cases = [
+        ("draw spere(r: 1)", "draw sphere(r: 1)"),
+        ("draw sphere(radius=1);", "draw sphere(r:1)"),
+        (
+            "draw box(size: 2) - sphere(r: 1) | sphere(r: 2)",
+            "draw (box(size: 2) - sphere(r: 1)) | sphere(r: 2)",
+        ),
+        ("draw box(size: 2) + sphere(r: 1)", "draw box(size: 2) | sphere(r: 1)"),
+        ("draw box(size: .5).rotate_z(45)", "draw box(size: 0.5).rotate_z(45deg)"),
+        ("let a = 5 mm\nlet b = 2 == 2 && 1 == 1", "let a = 5mm\nlet b = 2 == 2 and 1 == 1"),
+        ("linear = 5\nsphere(r: 5.)", "let linear = 5\ndraw sphere(r: 5.0)"),
+    ];
+    for (scene, want) in cases {
+        let mut text = scene.to_owned();
+        for _ in 0..9 {
+            let mut sources = SourceMap::default();
+            let file = sources.add("scene.pss", None, text.as_str());
+            if let Err(errors) = pss::lang::read(&mut sources, file, &pss::prepare::catalog(), &[]) {
+                text = pss::diag::mended(&text, file, &errors).0;
+            }
+        }
+        assert_eq!(text, want);
+    }
 }

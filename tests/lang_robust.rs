@@ -2,8 +2,9 @@
 
 mod lang_support;
 
-use lang_support::{complaints, read_with, scene};
+use lang_support::{catalog, complaints, read_with, scene};
 use pss::diag::Diagnostic;
+use pss::lang::Reading;
 use pss::source::SourceMap;
 
 const LONG: &str = r##"/* all of it */ units(cm)
@@ -139,6 +140,86 @@ fn lists_that_double_end_in_an_error() {
     let lets: String = (0..60).map(|i| format!("let a{} = [a{i}, a{i}]\n", i + 1)).collect();
     let (outcome, _) = read_with(&format!("let a0 = sphere(r: 1)\n{lets}draw union(a60)"), &[]);
     assert_eq!(outcome.expect_err("too many")[0].code, "E0703");
+}
+
+/// The code of the first error of a scene whose values may take 64 MiB.
+fn refused(text: &str) -> &'static str {
+    let mut sources = SourceMap::default();
+    let file = sources.add("scene.pss", None, text);
+    let catalog = catalog();
+    let reading = Reading {
+        catalog: &catalog,
+        defines: &[],
+        files: None,
+        geometry: None,
+        expects: true,
+        memory: 64 << 20,
+    };
+    let errors = pss::lang::read_with(&mut sources, file, &reading).err().unwrap_or_default();
+    errors.first().map_or("none", |error| error.code)
+}
+
+/// What takes little text to say takes little time and memory to refuse.
+#[test]
+fn short_texts_cost_little() {
+    let nest = |open: &str, inside: &str, close: &str| {
+        let body = format!("{}{inside}{}", open.repeat(900), close.repeat(900));
+        format!("fn f(n) = {body}\nlet a = f(0)")
+    };
+    let lets: String = (0..200).map(|i| format!("let a{i} = 1 ")).collect();
+    let million = "let m = 0..1000000\n";
+    let cases = [
+        ("E0703", "let a = concat(0..600000, 0..600000)".to_owned()),
+        ("E0709", format!("{million}let a = for i in m {{ count(concat(0..900000, [])) }}")),
+        ("E0709", format!("{million}let a = for i in m {{ sum(m) }}")),
+        ("E0709", format!("{million}let e = for i in 0..1e5 {{ [] }}\nlet a = for i in m {{ union(e) }}")),
+        ("E0709", format!("{million}let a = for i in m {{ {}1 }}", "1 + ".repeat(1000))),
+        ("E0709", format!("let a = {{ {lets} for i in 0..1000000 {{ {} }} }}", ["a0"; 200].join("+"))),
+        ("E0709", format!("{million}let a = for i in m {{ {{ {lets} a0 }} }}")),
+        ("E0709", {
+            let f = "fn f(n, x) = if n == 0 { x } else { f(n - 1, x) + f(n - 1, x) }";
+            format!("{f}\nlet a = implicit(f(40, x) < 1, inside: box(size: 1))")
+        }),
+        ("E0709", {
+            let (open, close) = ("(".repeat(900), ")".repeat(900));
+            format!("{million}let a = for i in m {{ implicit({open}x{close} < 1, inside: box(size: 1)) }}")
+        }),
+        ("E0710", format!("{million}let a = for i in m {{ [i, i, i, i] }}")),
+        ("E0710", format!("{million}let a = for i in m {{ [{}1] }}", "1, ".repeat(1000))),
+        ("E0710", format!("{million}let a = for i in m {{ \"{}\" }}", "long ".repeat(200))),
+        ("E0710", format!("{million}let a = for i in m {{ sphere(r: i) }}")),
+        ("E0710", format!("{million}let a = for i in m {{ matte(#fff) }}")),
+        ("E0710", format!("{million}let a = for i in m {{ fn(x) => x + i }}")),
+        ("E0710", format!("{million}let s = sphere(r: 1)\nlet a = for i in m {{ s | s }}")),
+        ("E0710", format!("{million}let s = sphere(r: 1)\nlet a = for i in m {{ s.move([1, 1, i]) }}")),
+        ("E0710", "let a = sphere(r: 1).around(1000000)".to_owned()),
+        ("E0706", nest("(", "f(n + 1)", ")")),
+        ("E0706", nest("-", "f(n + 1)", "")),
+        ("E0706", nest("[", "f(n + 1)", "]")),
+    ];
+    for (code, text) in cases {
+        assert_eq!(refused(&text), code, "{}", &text[..text.len().min(120)]);
+    }
+}
+
+#[test]
+fn what_a_loop_warns_of_is_told_once() {
+    let (outcome, _) = read_with("draw union(for i in 0..1000 { sphere(r: 0) })", &[]);
+    assert_eq!(outcome.expect("a scene").1.len(), 1);
+}
+
+/// Lists that share their elements are long when they are written out, and so are shapes.
+#[test]
+fn what_doubles_is_cut_short_where_it_is_written_out() {
+    let lists: String = (0..60).map(|i| format!("let a{} = [a{i}, a{i}]\n", i + 1)).collect();
+    let printed = scene(&format!("let a0 = [1, 2]\n{lists}print a60")).prints;
+    assert!(printed[0].len() < 3 << 20 && printed[0].ends_with(" ..."));
+    let shapes: String = (0..60).map(|i| format!("let a{} = a{i} | a{i}\n", i + 1)).collect();
+    let doubled = scene(&format!("let a0 = sphere(r: 1)\n{shapes}draw a60"));
+    assert_eq!(doubled.written_out(), (1 << 61) - 1);
+    let chain = scene(&format!("draw sphere(r: 1){}", ".move([1, 0, 0])".repeat(20_000)));
+    assert_eq!(chain.written_out(), 20_001);
+    assert!(serde_json::to_string(&chain).is_ok());
 }
 
 #[test]

@@ -15,13 +15,19 @@ fn read_in(folder: &Path, text: &str) -> Result<Read, String> {
     let file = sources.add("scene.pss", Some(folder.join("scene.pss")), text);
     let options = Options { scene_dir: folder.to_owned(), ..Options::default() };
     let (catalog, measuring) = (prepare::catalog(), Measuring::new(&options));
-    let imports = Imports { scene_dir: folder, allow_read: &[] as &[PathBuf], limit: 1 << 20 };
+    let imports = Imports {
+        scene_dir: folder,
+        allow_read: &[] as &[PathBuf],
+        limit: 1 << 20,
+        inputs: Default::default(),
+    };
     let reading = Reading {
         catalog: &catalog,
         defines: &[],
         files: Some(&imports),
         geometry: Some(&measuring),
         expects: true,
+        memory: pss::lang::MEMORY,
     };
     let told = |all: &[Diagnostic], sources: &SourceMap| pss::report::text(all, sources, false);
     match pss::lang::read_with(&mut sources, file, &reading) {

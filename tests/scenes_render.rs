@@ -36,9 +36,15 @@ fn pixels(path: &Path, defines: &[(String, String)]) -> Vec<[f32; 4]> {
     let reading = Reading {
         catalog: &catalog,
         defines,
-        files: Some(&Imports { scene_dir: folder, allow_read: &[], limit: 1 << 20 }),
+        files: Some(&Imports {
+            scene_dir: folder,
+            allow_read: &[],
+            limit: 1 << 20,
+            inputs: Default::default(),
+        }),
         geometry: Some(&measuring),
         expects: true,
+        memory: pss::lang::MEMORY,
     };
     let Read { scene, warnings, unmet } = pss::lang::read_with(&mut sources, file, &reading)
         .unwrap_or_else(|e| panic!("{name}: {}", pss::report::text(&e, &sources, false)));

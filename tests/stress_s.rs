@@ -1,4 +1,4 @@
-//! STRESS.md S11 to S16, of what scenes compute and import; the others are named in `lang_robust` and `cli_bad_scenes`.
+//! STRESS.md S11 to S16, of what scenes compute and import; the others are in `stress_s_text`.
 
 mod cli_common;
 

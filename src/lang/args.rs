@@ -4,6 +4,7 @@
 use std::cell::Cell;
 
 use super::ast::{Args, Expr};
+use super::budget::Budget;
 use super::habits;
 use super::queries::Geometry;
 use super::value::{Eval, Located};
@@ -77,9 +78,13 @@ impl<'a> Callee<'a> {
                     let told = format!("`{}` has no argument `{}`", self.word, name.text);
                     let error = Diagnostic::error("E0403", told).at(name.at, "unknown argument");
                     if let Some(help) = habits::instead(&name.text, habits::Place::Argument) {
-                        return error.help(format!("{help}; it is `{}`", self.signature()));
+                        let same = habits::same(&name.text, habits::Place::Argument);
+                        let same = same.filter(|same| self.formals.iter().any(|f| f.name == *same));
+                        return error
+                            .fix_with(name.at, same)
+                            .help(format!("{help}; it is `{}`", self.signature()));
                     }
-                    error.help(match known {
+                    error.fix_with(name.at, known).help(match known {
                         Some(known) => format!("did you mean `{known}`? It is `{}`", self.signature()),
                         None => format!("it is `{}`", self.signature()),
                     })
@@ -116,11 +121,14 @@ impl<'a> Callee<'a> {
             n => format!("`{}` takes {n} arguments by place", self.word),
         };
         let unnamed = if self.formals.is_empty() { "no argument is wanted" } else { "which one is this?" };
-        let list = self.formals.first().is_some_and(|f| f.name == "list");
-        Diagnostic::error("E0406", told).at(at, unnamed).help(if list {
-            format!("put the operands in a list: `{}([a, b])`", self.word)
-        } else {
-            format!("it is `{}`", self.signature())
+        let list = self.formals.iter().position(|f| f.name == "list");
+        Diagnostic::error("E0406", told).at(at, unnamed).help(match list {
+            Some(0) => format!("put the operands in a list: `{}([a, b])`", self.word),
+            Some(_) => format!("put all but the first in a list: `{}(a, [b, c])`", self.word),
+            None if self.word == "rotate" => "turn around one axis after the other: \
+                `.rotate_x(90deg).rotate_z(45deg)`, or around any: `.rotate(axis: [1, 1, 0], by: 45deg)`"
+                .to_owned(),
+            None => format!("it is `{}`", self.signature()),
         })
     }
 }
@@ -141,6 +149,8 @@ pub struct Bound<'a> {
     pub materials: &'a [Call],
     /// The widest bar of what was measured.
     pub bars: &'a Cell<f64>,
+    /// What is left of time and memory.
+    pub budget: &'a Budget,
 }
 
 impl Bound<'_> {

@@ -17,6 +17,13 @@ impl Source<'_> {
     fn between(&self, start: u32, end: u32) -> &str {
         self.text[(start - self.at.start) as usize..(end - self.at.start) as usize].trim()
     }
+
+    /// The place of what stands between two places, without blanks around it.
+    fn trimmed(&self, start: u32, end: u32) -> Span {
+        let whole = &self.text[(start - self.at.start) as usize..(end - self.at.start) as usize];
+        let start = start + (whole.len() - whole.trim_start().len()) as u32;
+        Span { start, end: start + whole.trim().len() as u32, ..self.at }
+    }
 }
 
 /// Joins two operands; operators of one level become one chain.
@@ -68,14 +75,13 @@ pub fn refuse_mixed(signs: &[(InfixOp, Span)], source: &Source) -> Result<(), Bo
         if let (Some(first), Some(other)) = (sets.first(), other)
             && sets.iter().any(|(op, _)| op.level() == 3)
         {
-            return Err(Diagnostic::error(
-                "E0201",
-                format!("`{}` and `{}` stand together without parentheses", first.0.sign(), other.0.sign()),
-            )
-            .at(other.1, "which comes first?")
-            .at(first.1, "the first operator")
-            .help(rewriting(&sets, start, end, source))
-            .into());
+            let told =
+                format!("`{}` and `{}` stand together without parentheses", first.0.sign(), other.0.sign());
+            let error = Diagnostic::error("E0201", told)
+                .at(other.1, "which comes first?")
+                .at(first.1, "the first operator")
+                .fix(source.trimmed(start, end), from_the_left(&sets, start, end, source));
+            return Err(error.help(rewriting(&sets, start, end, source)).into());
         }
         start = last.map_or(end, |s| s.end);
     }
@@ -85,24 +91,32 @@ pub fn refuse_mixed(signs: &[(InfixOp, Span)], source: &Source) -> Result<(), Bo
 /// Both readings of a short chain, the one from left to right of a longer one.
 fn rewriting(sets: &[(InfixOp, Span)], start: u32, end: u32, source: &Source) -> String {
     const WIDEST: usize = 90;
-    let operand = |i: usize| {
-        let from = if i == 0 { start } else { sets[i - 1].1.end };
-        source.between(from, sets.get(i).map_or(end, |s| s.1.start))
-    };
     let text = source.between(start, end);
     if text.contains('\n') || text.len() > WIDEST {
         return "put parentheses around what belongs together".to_owned();
     }
-    let mut left = operand(0).to_owned();
+    let left = from_the_left(sets, start, end, source);
+    if let [first, second] = sets {
+        let [a, b, c] = [0, 1, 2].map(|i| operand(i, sets, start, end, source));
+        return format!("write `{left}` or `{a} {} ({b} {} {c})`", first.0.sign(), second.0.sign());
+    }
+    format!("write `{left}`, or put the parentheses where they are meant")
+}
+
+/// An operand of a chain of set operators, as it was written.
+fn operand<'a>(i: usize, sets: &[(InfixOp, Span)], start: u32, end: u32, source: &'a Source) -> &'a str {
+    let from = if i == 0 { start } else { sets[i - 1].1.end };
+    source.between(from, sets.get(i).map_or(end, |s| s.1.start))
+}
+
+/// The chain with parentheses as it reads from left to right.
+fn from_the_left(sets: &[(InfixOp, Span)], start: u32, end: u32, source: &Source) -> String {
+    let mut left = operand(0, sets, start, end, source).to_owned();
     for (i, (op, _)) in sets.iter().enumerate() {
         if i > 0 && *op != sets[i - 1].0 {
             left = format!("({left})");
         }
-        left = format!("{left} {} {}", op.sign(), operand(i + 1));
+        left = format!("{left} {} {}", op.sign(), operand(i + 1, sets, start, end, source));
     }
-    if let [first, second] = sets {
-        let (a, b, c) = (operand(0), operand(1), operand(2));
-        return format!("write `{left}` or `{a} {} ({b} {} {c})`", first.0.sign(), second.0.sign());
-    }
-    format!("write `{left}`, or put the parentheses where they are meant")
+    left
 }

@@ -98,7 +98,7 @@ fn size(machine: &mut Machine, given: &Located, name: &str) -> Eval<f64> {
         let warning = Diagnostic::warning("W0101", format!("`{name}` is zero: the shape is nothing"))
             .at(given.at, "no size")
             .help("give it a size, or leave the shape out");
-        machine.warnings.push(warning);
+        machine.warn(warning);
     } else if x < tolerance::SMALLEST {
         return Err(Diagnostic::error("E0506", format!("`{name}` is too small for its powers to be told"))
             .at(given.at, format!("{x:e}"))

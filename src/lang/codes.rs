@@ -393,12 +393,18 @@ pub const CODES: &[Code] = &[
     ),
     code(
         "E0709",
-        "The scene takes too many calls and turns of loops.",
+        "The scene takes too many steps.",
         "Does a recursion call itself more than once? Keep what it gives in a `let`.",
         [
             "fn f(n) = if n < 2 { n } else { f(n - 1) + f(n - 2) }\nprint f(60)",
             "fn f(n) = if n < 2 { n } else { f(n - 1) + f(n - 2) }\nprint f(10)",
         ],
+    ),
+    code(
+        "E0710",
+        "What the scene computes takes too much memory.",
+        "Make shorter lists, or use one shape many times: `shape.array(list)`.",
+        NONE,
     ),
     code(
         "E0801",
@@ -487,5 +493,17 @@ pub const CODES: &[Code] = &[
         "A name hides what the language calls so.",
         "Take another name.",
         ["let sphere = 3", "let ball = 3"],
+    ),
+    code(
+        "W0202",
+        "A number is so small that it is read as 0.",
+        "Choose smaller units.",
+        ["let a = 1e-400", "let a = 1e-300"],
+    ),
+    code(
+        "W0203",
+        "The scene draws nothing: its picture is the background.",
+        "Draw something: `draw sphere(r: 1)`.",
+        NONE,
     ),
 ];

@@ -3,6 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::args::Bound;
+use super::budget::{NODE, OPERAND};
 use super::placing::{about, is_matrix, matrix, rotation};
 use super::value::{Eval, List, Located, Val};
 use crate::diag::Diagnostic;
@@ -60,9 +61,13 @@ fn list<'a>(given: &'a Located, of: &str) -> Eval<&'a List> {
     }
 }
 
-fn copies(bound: &Bound, maps: impl Iterator<Item = Eval<(DAffine3, Span)>>) -> Eval<Val> {
+fn copies(bound: &Bound, maps: impl ExactSizeIterator<Item = Eval<(DAffine3, Span)>>) -> Eval<Val> {
+    let count = maps.len();
     let child = bound.receiver()?.shape("shape")?;
     let mut operands = Vec::new();
+    let at = bound.callee.at;
+    bound.budget.spend(count, at)?;
+    bound.budget.keep(count * (NODE + OPERAND), at)?;
     for map in maps {
         let (world_from_local, at) = map?;
         let kind = ShapeKind::Transform { world_from_local, child: child.clone() };

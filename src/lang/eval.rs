@@ -2,24 +2,27 @@
 //! declared things to `check`, builtins to their table, items to `items`.
 
 use std::cell::Cell;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::args::{Bound, Callee};
 use super::ast::{Args, Expr, ExprKind, Function, InfixOp, PrefixOp, Step, Unit, Word};
+use super::budget::{self, Budget, CHEAP};
 use super::builtins::{self, Builtin};
 use super::flow::{range_count, range_value};
 use super::functions::Closure;
 use super::queries::Geometry;
 use super::scope::Locals;
+use super::unknown::{callable, no_member};
 use super::value::{Eval, List, Located, Stop, Val};
-use super::{arithmetic, check, habits, sets, units};
-use crate::diag::{Diagnostic, nearest};
+use super::{arithmetic, check, literals, sets, units};
+use crate::diag::Diagnostic;
 use crate::scene::{Call, Catalog, Group, MaterialId, Shape, ShapeKind};
 use crate::source::{SourceMap, Span};
 
-/// Calls and turns of loops, at most.
-const MAX_STEPS: usize = 5_000_000;
+/// Expressions that are evaluated within one another, at most, those of functions that are called among them: a thousand
+/// calls of a body that nests a thousand brackets would take gigabytes of stack.
+const DEEPEST: usize = 50_000;
 
 /// What an evaluation knows and gathers.
 pub struct Machine<'a> {
@@ -37,14 +40,20 @@ pub struct Machine<'a> {
     pub locals: Locals,
     /// Calls of functions that are open.
     pub calls: usize,
-    /// Calls and turns of loops so far.
-    pub steps: usize,
+    /// Expressions that are open.
+    pub depth: usize,
+    /// What is left of time and memory.
+    pub budget: Budget,
     /// The name of the `let` being evaluated.
     pub binding: Option<String>,
+    /// What the language itself calls something.
+    pub words: HashSet<&'static str>,
     /// Materials made so far.
     pub materials: Vec<Call>,
     /// Warnings so far.
     pub warnings: Vec<Diagnostic>,
+    /// What was warned of where.
+    pub warned: HashSet<(&'static str, Option<Span>)>,
     /// Who measures shapes.
     pub geometry: Option<&'a dyn Geometry>,
     /// The widest bar of what was measured since it was last set to zero.
@@ -63,33 +72,35 @@ impl Machine<'_> {
         Val::Material(MaterialId(self.materials.len() as u32 - 1))
     }
 
-    /// Counts a call or a turn of a loop.
-    pub fn step(&mut self, at: Span) -> Eval<()> {
-        self.steps += 1;
-        if self.steps <= MAX_STEPS {
-            return Ok(());
+    /// Counts a step, and goes one expression deeper; whoever comes back takes one from `depth`.
+    pub fn enter(&mut self, at: Span) -> Eval<()> {
+        self.budget.spend(1, at)?;
+        if DEEPEST <= self.depth {
+            let told = format!("calls and brackets nest deeper than {DEEPEST}");
+            return Err(Diagnostic::error("E0706", told)
+                .at(at, "the innermost")
+                .help("name parts of the function with `let`, or make a list by `for`, without recursion")
+                .into());
         }
-        Err(Diagnostic::error(
-            "E0709",
-            format!("the scene takes more than {MAX_STEPS} calls and turns of loops"),
-        )
-        .at(at, "here it is given up")
-        .help("does a loop or a recursion come to an end?")
-        .into())
+        self.depth += 1;
+        Ok(())
+    }
+
+    /// A warning; a loop may give the same many times.
+    pub fn warn(&mut self, warning: Diagnostic) {
+        if self.warned.insert((warning.code, warning.labels.first().map(|l| l.span))) {
+            self.warnings.push(warning);
+        }
     }
 
     /// Warns of a name that is one of the language.
     pub fn hides_builtin(&mut self, name: &Word) {
         let word = name.text.as_str();
-        let constant = builtins::CONSTANTS.iter().any(|(n, _, _)| *n == word);
-        if constant || self.callable().any(|known| known == word) {
+        if self.words.contains(word) {
             let warning = Diagnostic::warning("W0201", format!("`{word}` hides what the language calls so"))
                 .at(name.at, "defined here")
                 .help("take another name");
-            // A block may be evaluated many times.
-            if !self.warnings.iter().any(|w| w.labels.first().is_some_and(|l| l.span == name.at)) {
-                self.warnings.push(warning);
-            }
+            self.warn(warning);
         }
     }
 
@@ -113,17 +124,32 @@ impl Machine<'_> {
 
     /// The value of an expression.
     pub fn value(&mut self, expr: &Expr) -> Eval<Val> {
+        self.enter(expr.at)?;
+        let value = self.evaluated(expr);
+        self.depth -= 1;
+        value
+    }
+
+    fn evaluated(&mut self, expr: &Expr) -> Eval<Val> {
         match &expr.kind {
-            ExprKind::Number(x, None) => Ok(Val::Number(*x)),
-            ExprKind::Number(x, Some(Unit::Length(um))) => Ok(Val::Number(units::length(*x, *um, self.unit))),
-            ExprKind::Number(x, Some(Unit::Angle(unit))) => Ok(Val::Angle(units::degrees(*x, *unit))),
+            ExprKind::Number(x, unit) => {
+                if *x == 0.0 {
+                    let lost = literals::lost(self.written(expr.at), expr.at);
+                    lost.into_iter().for_each(|warning| self.warn(warning));
+                }
+                Ok(match unit {
+                    None => Val::Number(*x),
+                    Some(Unit::Length(um)) => Val::Number(units::length(*x, *um, self.unit)),
+                    Some(Unit::Angle(unit)) => Val::Angle(units::degrees(*x, *unit)),
+                })
+            }
             ExprKind::Color(c) => Ok(Val::Color(*c)),
             ExprKind::Text(text) => Ok(Val::Text(text.as_str().into(), Some(expr.at.file))),
             ExprKind::Bool(b) => Ok(Val::Bool(*b)),
             ExprKind::Name(name) => self.name(name, expr.at),
             ExprKind::List(items) => {
                 let items = items.iter().map(|i| self.located(i)).collect::<Eval<Vec<_>>>()?;
-                List::value(items, expr.at)
+                List::value(items, &self.budget, expr.at)
             }
             ExprKind::Paren(inside) => self.value(inside),
             ExprKind::Steps(base, steps) => self.steps(base, steps),
@@ -132,7 +158,10 @@ impl Machine<'_> {
             ExprKind::If(parts) => self.choose(parts),
             ExprKind::For(loops, body) => self.repeat(loops, body, expr.at),
             ExprKind::Block(bindings, body) => self.block(bindings, body),
-            ExprKind::Function(function) => Ok(self.function(function, None)),
+            ExprKind::Function(function) => {
+                self.budget.keep(budget::CLOSURE, expr.at)?;
+                Ok(self.function(function, None))
+            }
         }
     }
 
@@ -147,8 +176,12 @@ impl Machine<'_> {
     }
 
     /// What the scene itself calls so.
-    pub fn defined(&self, name: &str) -> Option<Eval<Val>> {
-        if let Some(value) = self.locals.get(name) {
+    pub fn defined(&self, name: &str, at: Span) -> Option<Eval<Val>> {
+        let (local, seen) = self.locals.get(name);
+        if let Err(stop) = self.budget.spend(seen / CHEAP, at) {
+            return Some(Err(stop));
+        }
+        if let Some(value) = local {
             return Some(Ok(value.clone()));
         }
         let known = self.names[self.module].get(name)?;
@@ -156,13 +189,13 @@ impl Machine<'_> {
     }
 
     fn name(&self, name: &str, at: Span) -> Eval<Val> {
-        if let Some(value) = self.defined(name) {
+        if let Some(value) = self.defined(name, at) {
             return value;
         }
         if let Some((_, value, _)) = builtins::CONSTANTS.iter().find(|(n, _, _)| *n == name) {
             return Ok(Val::Number(*value));
         }
-        if self.callable().any(|w| w == name) {
+        if callable(self.catalog).any(|w| w == name) {
             return Err(Diagnostic::error("E0410", format!("`{name}` is called with arguments"))
                 .at(at, "no arguments")
                 .help(format!("write `{name}(...)`"))
@@ -177,33 +210,11 @@ impl Machine<'_> {
         Err(self.unknown(name, at).into())
     }
 
-    /// The words that can be called.
-    fn callable(&self) -> impl Iterator<Item = &'static str> + '_ {
-        let catalog = self.catalog.words(Group::Primitive).chain(self.catalog.words(Group::Material));
-        catalog.chain(builtins::functions().map(|b| b.name))
-    }
-
-    fn unknown(&self, name: &str, at: Span) -> Diagnostic {
-        let mut known: Vec<&str> = self.names[self.module].keys().map(String::as_str).collect();
-        known.extend(self.locals.names());
-        known.sort_unstable();
-        self.callable().for_each(|word| known.push(word));
-        builtins::CONSTANTS.iter().for_each(|(word, _, _)| known.push(word));
-        let error = Diagnostic::error("E0401", format!("`{name}` is not known")).at(at, "unknown name");
-        if let Some(help) = habits::instead(name, habits::Place::Name) {
-            return error.help(help);
-        }
-        match nearest(name, known) {
-            Some(known) => error.help(format!("did you mean `{known}`?")),
-            None => error.help(format!("define it: `let {name} = ...`")),
-        }
-    }
-
     fn steps(&mut self, base: &Expr, steps: &[Step]) -> Eval<Val> {
         let mut rest = steps.iter();
         let mut at = base.at;
         let mut value = match (&base.kind, steps.first()) {
-            (ExprKind::Name(name), Some(Step::Call(args))) if self.defined(name).is_none() => {
+            (ExprKind::Name(name), Some(Step::Call(args))) if self.defined(name, at).is_none() => {
                 rest.next();
                 at = at.to(args.at);
                 self.call(name, base.at, args)?
@@ -249,7 +260,7 @@ impl Machine<'_> {
         let error =
             Diagnostic::error("E0410", format!("{kind} cannot be called")).at(at, "a call").at(on.at, kind);
         match &base.kind {
-            ExprKind::Name(name) if self.callable().any(|w| w == name) => {
+            ExprKind::Name(name) if callable(self.catalog).any(|w| w == name) => {
                 error.help(format!("here `{name}` is a name of this file: take another name for it")).into()
             }
             _ => error.help("remove the arguments, or put an operator before the `(`").into(),
@@ -262,10 +273,12 @@ impl Machine<'_> {
         if let Some(decl) = catalog.find(Group::Primitive, word) {
             let call = check::call(self, decl, args, at)?;
             let name = self.binding.clone().unwrap_or_else(|| word.to_owned());
+            self.budget.keep(budget::NODE + budget::call(&call), at)?;
             return Ok(Val::Shape(Shape::new(ShapeKind::Leaf { call, name }, at)));
         }
         if let Some(decl) = catalog.find(Group::Material, word) {
             let call = check::call(self, decl, args, at)?;
+            self.budget.keep(budget::call(&call), at)?;
             return Ok(self.add_material(call));
         }
         if let Some(builtin) = builtins::functions().find(|b| b.name == word) {
@@ -311,7 +324,9 @@ impl Machine<'_> {
             geometry: self.geometry,
             materials: &self.materials,
             bars: &self.bars,
+            budget: &self.budget,
         })?;
+        self.budget.keep(budget::made(&value), at)?;
         arithmetic::finite(&value, builtin.name, at)?;
         Ok(value)
     }
@@ -321,7 +336,10 @@ impl Machine<'_> {
         match (op, &on.value) {
             (PrefixOp::Negate, _) => arithmetic::negate(&on, sign),
             (PrefixOp::Not, Val::Bool(b)) => Ok(Val::Bool(!b)),
-            (PrefixOp::Complement, Val::Shape(_)) => sets::complement(on, at),
+            (PrefixOp::Complement, Val::Shape(_)) => {
+                self.budget.keep(budget::NODE + budget::OPERAND, at)?;
+                sets::complement(on, at)
+            }
             (PrefixOp::Not, value) => {
                 Err(Diagnostic::error("E0203", format!("`not` cannot take {}", value.kind()))
                     .at(on.at, value.kind())
@@ -347,6 +365,7 @@ impl Machine<'_> {
             for (op, sign, operand) in rest {
                 operands.push((*op, *sign, self.located(operand)?));
             }
+            self.budget.keep(budget::NODE + budget::OPERAND * (rest.len() + 1), at)?;
             return sets::chain(left, operands, at);
         }
         for (op, sign, operand) in rest {
@@ -369,37 +388,6 @@ impl Machine<'_> {
             left = Located { value: arithmetic::infix(*op, &left, &right, *sign)?, at };
         }
         Ok(left.value)
-    }
-}
-
-fn no_member(on: &Located, word: &Word) -> Diagnostic {
-    let name = word.text.as_str();
-    if let Val::Record(record) = &on.value {
-        let names: Vec<String> = record.names().map(|n| format!("`.{n}`")).collect();
-        let error = Diagnostic::error("E0408", format!("{} has no `{name}`", on.value.kind()));
-        let error = error.at(word.at, "unknown part");
-        return match nearest(name, record.names()) {
-            Some(known) => error.help(format!("did you mean `.{known}`?")),
-            None => error.help(format!("it has {}", names.join(" "))),
-        };
-    }
-    if builtins::METHODS.iter().any(|b| b.name == name) {
-        return Diagnostic::error("E0410", format!("`.{name}` is called with arguments"))
-            .at(word.at, "no arguments")
-            .help(format!("write `.{name}(...)`"));
-    }
-    let error = Diagnostic::error("E0408", format!("{} has no method `{name}`", on.value.kind()))
-        .at(word.at, "unknown method");
-    if let Some(help) = habits::instead(name, habits::Place::Method) {
-        return error.help(help);
-    }
-    let known = builtins::METHODS.iter().map(|b| b.name);
-    match nearest(name, known.clone()) {
-        Some(known) => error.help(format!("did you mean `.{known}`?")),
-        None => error.help(format!(
-            "the methods are {}",
-            known.map(|n| format!("`.{n}`")).collect::<Vec<_>>().join(" ")
-        )),
     }
 }
 

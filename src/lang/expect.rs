@@ -25,7 +25,8 @@ enum Room {
 
 impl Machine<'_> {
     /// `None` where an expectation holds, else what to say.
-    pub fn expect(&mut self, expect: &Expect, at: Span) -> Eval<Option<Diagnostic>> {
+    pub fn expect(&mut self, expect: &Expect) -> Eval<Option<Diagnostic>> {
+        let at = expect.right.as_ref().map_or(expect.left.at, |(_, right)| expect.left.at.to(right.at));
         self.bars.set(0.0);
         let left = self.located(&expect.left)?;
         let Some((nearly, right)) = &expect.right else {
@@ -119,7 +120,11 @@ impl Machine<'_> {
         let apart = distance(&left.value, &right.value).map(|d| match room {
             Room::Share(x) => {
                 let share = 100.0 * d / size(&right.value);
-                format!("; they differ by {d:.3e}, {share:.3} %, where {:.3} % are allowed", 100.0 * x)
+                format!(
+                    "; they differ by {d:.3e}, {} %, where {} % are allowed",
+                    short(share),
+                    short(100.0 * x)
+                )
             }
             Room::Absolute(x) => format!("; they differ by {d:.3e}, where {x} is allowed"),
             Room::None => format!("; they differ by {d:.3e}"),
@@ -139,6 +144,11 @@ impl Machine<'_> {
             bar => format!(" (+- {bar:.1e})"),
         }
     }
+}
+
+/// A number in few digits, however small.
+fn short(x: f64) -> String {
+    if 1e-3 <= x { format!("{x:.3}") } else { format!("{x:.0e}") }
 }
 
 fn not_met(at: Span) -> Diagnostic {

@@ -1,6 +1,9 @@
 //! Choices, loops and blocks.
 
+use std::borrow::Cow;
+
 use super::ast::{Expr, Word};
+use super::budget::{Budget, Held, weight};
 use super::eval::Machine;
 use super::value::{Eval, List, Located, Val};
 use crate::diag::Diagnostic;
@@ -47,25 +50,31 @@ impl Machine<'_> {
     /// `for a in b, c in d { e }`: one flat list, the last name fastest.
     pub fn repeat(&mut self, loops: &[(Word, Expr)], body: &Expr, at: Span) -> Eval<Val> {
         let outside = self.locals.clone();
-        let mut out = Vec::new();
+        let mut out = (Vec::new(), self.budget.hold());
         let done = self.turns(loops, body, at, &mut out);
         self.locals = outside;
         done?;
-        List::value(out, at)
+        List::held(out.0, out.1, at)
     }
 
-    fn turns(&mut self, loops: &[(Word, Expr)], body: &Expr, at: Span, out: &mut Vec<Located>) -> Eval<()> {
+    fn turns(
+        &mut self,
+        loops: &[(Word, Expr)],
+        body: &Expr,
+        at: Span,
+        out: &mut (Vec<Located>, Held),
+    ) -> Eval<()> {
         let Some(((name, over), rest)) = loops.split_first() else {
-            if MAX_ELEMENTS <= out.len() {
-                return Err(too_long(at).into());
-            }
-            out.push(self.located(body)?);
+            room(out.0.len(), at)?;
+            let item = self.located(body)?;
+            self.budget.grow(&mut out.1, weight(&item), at)?;
+            out.0.push(item);
             return Ok(());
         };
         let over = self.located(over)?;
         let outside = self.locals.clone();
         let mut turn = |machine: &mut Self, value: Val| {
-            machine.step(at)?;
+            machine.budget.spend(1, at)?;
             machine.locals = outside.with(&name.text, value);
             machine.turns(rest, body, at, out)
         };
@@ -94,24 +103,31 @@ pub fn range_value(lo: f64, i: u64, of_angles: bool) -> Val {
     if of_angles { Val::Angle(x) } else { Val::Number(x) }
 }
 
-/// The elements of a list or a range.
-pub fn elements(given: &Located, name: &str) -> Eval<Vec<Located>> {
+/// The elements of a list or a range; each is a step.
+pub fn elements<'a>(given: &'a Located, name: &str, budget: &Budget) -> Eval<Cow<'a, [Located]>> {
     match &given.value {
-        Val::List(list) => Ok(list.items.clone()),
+        Val::List(list) => {
+            budget.spend(list.items.len(), given.at)?;
+            Ok(Cow::Borrowed(&list.items))
+        }
         Val::Range(lo, hi, of_angles) => {
             let count = range_count(*lo, *hi);
-            if MAX_ELEMENTS as u64 <= count {
-                return Err(too_long(given.at).into());
-            }
             let at = given.at;
+            room((count as usize).saturating_sub(1), at)?;
+            budget.spend(count as usize, at)?;
             Ok((0..count).map(|i| Located { value: range_value(*lo, i, *of_angles), at }).collect())
         }
         _ => Err(given.unlike(name, "a list").help("write a list: `[a, b]`").into()),
     }
 }
 
-fn too_long(at: Span) -> Diagnostic {
-    Diagnostic::error("E0703", format!("more than {MAX_ELEMENTS} elements in one list"))
+/// Refuses one element more in a list of so many.
+pub fn room(count: usize, at: Span) -> Eval<()> {
+    if count < MAX_ELEMENTS {
+        return Ok(());
+    }
+    Err(Diagnostic::error("E0703", format!("more than {MAX_ELEMENTS} elements in one list"))
         .at(at, "too many")
         .help("make shorter lists")
+        .into())
 }

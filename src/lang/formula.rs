@@ -113,19 +113,28 @@ impl Reader<'_, '_> {
     }
 
     /// Whether an expression depends on the coordinates.
-    pub fn is_symbolic(&self, expr: &Expr) -> bool {
+    pub fn is_symbolic(&self, expr: &Expr) -> Eval<bool> {
         let names: Vec<&str> = self.symbols.iter().map(|(name, _)| name.as_str()).collect();
-        order::uses(expr, &names)
+        let (uses, steps) = order::uses(expr, &names);
+        self.machine.budget.spend(steps, expr.at)?;
+        Ok(uses)
     }
 
     /// The steps of an expression.
     pub fn term(&mut self, expr: &Expr) -> Eval<Term> {
+        self.machine.enter(expr.at)?;
+        let term = self.read(expr);
+        self.machine.depth -= 1;
+        term
+    }
+
+    fn read(&mut self, expr: &Expr) -> Eval<Term> {
         match &expr.kind {
             ExprKind::Name(n) if self.symbols.iter().any(|(name, _)| name == n) => {
                 let symbol = self.symbols.iter().rfind(|(name, _)| name == n);
                 symbol.map(|(_, term)| term.clone()).ok_or_else(|| stranger(expr.at).into())
             }
-            _ if !self.is_symbolic(expr) => self.constant(expr),
+            _ if !self.is_symbolic(expr)? => self.constant(expr),
             ExprKind::Paren(inside) => self.term(inside),
             ExprKind::If(parts) => self.choose(parts),
             ExprKind::Block(bindings, body) => self.block(bindings, body),
@@ -168,7 +177,7 @@ impl Reader<'_, '_> {
     fn indexed(&mut self, term: Term, steps: &[Follows], at: Span) -> Eval<Term> {
         match (term, steps) {
             (term, []) => Ok(term),
-            (Term::Vector(_), [Follows::Index(index, _)]) if self.is_symbolic(index) => {
+            (Term::Vector(_), [Follows::Index(index, _)]) if self.is_symbolic(index)? => {
                 let error = Diagnostic::error("E0511", "an index of a formula is the same everywhere");
                 Err(error.at(index.at, "depends on x, y or z").help("write a number").into())
             }
@@ -204,7 +213,7 @@ impl Reader<'_, '_> {
     }
 
     fn call(&mut self, word: &str, word_at: Span, args: &Args) -> Eval<Term> {
-        if let Some(known) = self.machine.defined(word) {
+        if let Some(known) = self.machine.defined(word, word_at) {
             return match known? {
                 Val::Function(closure) => self.call_function(&closure, args, word_at.to(args.at)),
                 value => {
@@ -221,7 +230,7 @@ impl Reader<'_, '_> {
             let error = Diagnostic::error("E0511", format!("`{word}` is no function of a formula"));
             let error = error.at(word_at, "not known here");
             return Err(match nearest(word, FUNCTIONS.iter().map(|f| f.name)) {
-                Some(near) => error.help(format!("did you mean `{near}`?")),
+                Some(near) => error.fix(word_at, near).help(format!("did you mean `{near}`?")),
                 None => error.help(format!(
                     "the functions are {}",
                     FUNCTIONS.iter().map(|f| format!("`{}`", f.name)).collect::<Vec<_>>().join(" ")
@@ -317,7 +326,11 @@ impl Reader<'_, '_> {
                 let plain = written.chars().all(|c| c.is_ascii_alphanumeric());
                 let fixed = if plain { format!("{written} * 1rad") } else { format!("({written}) * 1rad") };
                 let error = Diagnostic::error("E0502", format!("`{of}` wants an angle, found a bare number"));
-                Err(error.at(given.at, "which unit?").help(format!("write `{fixed}`")).into())
+                Err(error
+                    .at(given.at, "which unit?")
+                    .fix(given.at, &fixed)
+                    .help(format!("write `{fixed}`"))
+                    .into())
             }
             Term::Vector(_) => {
                 let error = Diagnostic::error("E0501", format!("`{of}` wants an angle, found a vector"));

@@ -52,7 +52,7 @@ impl Reader<'_, '_> {
             };
             self.bind(&name.text, part);
         }
-        self.machine.step(at)?;
+        self.machine.budget.spend(1, at)?;
         stacker::maybe_grow(super::functions::RED_ZONE, super::functions::MORE_STACK, || {
             self.term(&closure.function.body)
         })
@@ -60,7 +60,7 @@ impl Reader<'_, '_> {
 
     /// A term where the expression depends on the coordinates, else its value.
     fn part(&mut self, expr: &Expr) -> Eval<Part> {
-        if self.is_symbolic(expr) {
+        if self.is_symbolic(expr)? {
             self.term(expr).map(Part::Term)
         } else {
             self.machine.value(expr).map(Part::Value)
@@ -95,7 +95,7 @@ impl Reader<'_, '_> {
 
     /// `if a { b } else { c }` where a is the same everywhere.
     pub(super) fn choose(&mut self, [asked, then, otherwise]: &[Expr; 3]) -> Eval<Term> {
-        if self.is_symbolic(asked) {
+        if self.is_symbolic(asked)? {
             let error = Diagnostic::error("E0511", "a formula has no choice that depends on x, y or z");
             return Err(error
                 .at(asked.at, "depends on them")

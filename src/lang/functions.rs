@@ -98,7 +98,7 @@ impl Machine<'_> {
             inside = inside.with(&param.name.text, given.value);
         }
         self.locals = inside;
-        self.step(at)?;
+        self.budget.spend(1, at)?;
         self.value(&closure.function.body)
     }
 

@@ -42,6 +42,9 @@ const HABITS: &[(&[&str], Place, &str)] = &[
     (&["light_source"], Item, "write `light(at: [x, y, z])`, or `light(direction: [x, y, z])` for a sun"),
     (&["background"], Item, "write `light sky(color: #dfe8ff)`"),
     (&["$", "$fn", "$fa", "$fs"], Item, EXACT),
+    (&["#", "%"], Item, "what is to be seen through is drawn by `@ghost draw shape`"),
+    (&["*"], Item, "what is not to be seen is left out by `@skip draw shape`"),
+    (&["!"], Item, "what alone is to be seen is drawn by `@only draw shape`"),
     (&["cube"], Name, "write `box(size: [x, y, z])`, centred, or `box([0, 0, 0], [x, y, z])`"),
     (&["ellipsoid"], Name, "write `sphere(r: [x, y, z])`"),
     (&["linear_extrude", "prism"], Name, "write `extrude(outline, h: 10)`"),
@@ -73,6 +76,15 @@ const HABITS: &[(&[&str], Place, &str)] = &[
     (&["translate"], Name, MOVES),
     (&["color"], Name, WEAR),
     (&["atan"], Name, "write `atan2(y, x)`"),
+    (&["rotate", "scale", "mirror", "multmatrix", "resize"], Name, MOVES),
+    (
+        &["text"],
+        Name,
+        "there are no letters; an outline of points is extruded: `extrude([[0, 0], [1, 0], [0, 1]], h: 1)`",
+    ),
+    (&["projection", "offset", "render"], Name, "shapes are solids; a flat outline is a list of points"),
+    (&["children"], Name, "a function takes shapes as arguments: `fn pair(s) = s | s.move([9, 0, 0])`"),
+    (&["each"], Name, "lists are joined by `concat(a, b)`"),
     (&["translate", "translated", "position", "at"], Method, "write `.move([x, y, z])`"),
     (&["rotateX", "rotx"], Method, "write `.rotate_x(45deg)`"),
     (&["rotateY", "roty"], Method, "write `.rotate_y(45deg)`"),
@@ -91,7 +103,12 @@ const HABITS: &[(&[&str], Place, &str)] = &[
     (&["d", "diameter"], Argument, "write the radius: `r: d / 2`"),
     (&["radius"], Argument, "write `r:`"),
     (&["height"], Argument, "write `h:`"),
-    (&["center", "centre", "origin"], Argument, "write the centre: `at: [x, y, z]`"),
+    (
+        &["center", "centre", "origin"],
+        Argument,
+        "what stands elsewhere is moved: `.move([x, y, z])`; some shapes take `at: [x, y, z]`, their centre",
+    ),
+    (&["diam", "d1", "d2"], Argument, "write the radius, half of it"),
     (&["pigment", "texture", "color", "colour", "material"], Argument, WEAR),
     (
         &["location", "position", "pos", "from", "eye"],
@@ -106,7 +123,76 @@ const HABITS: &[(&[&str], Place, &str)] = &[
     (&["r1"], Argument, "a cylinder of two radii is `cone(r1: 2, r2: 1, h: 3)`"),
 ];
 
+/// Words that mean the same as one of ours, in the same place.
+const SAME: &[(&str, Place, &str)] = &[
+    ("union", Item, "draw union"),
+    ("difference", Item, "draw difference"),
+    ("intersection", Item, "draw intersection"),
+    ("var", Item, "let"),
+    ("const", Item, "let"),
+    ("#declare", Item, "let"),
+    ("#local", Item, "let"),
+    ("function", Item, "fn"),
+    ("def", Item, "fn"),
+    ("func", Item, "fn"),
+    ("echo", Item, "print"),
+    ("assert", Item, "expect"),
+    ("light_source", Item, "light"),
+    ("red", Name, "#ff0000"),
+    ("green", Name, "#00ff00"),
+    ("blue", Name, "#0000ff"),
+    ("white", Name, "#ffffff"),
+    ("black", Name, "#000000"),
+    ("yellow", Name, "#ffff00"),
+    ("orange", Name, "#ffa500"),
+    ("gray", Name, "#808080"),
+    ("grey", Name, "#808080"),
+    ("cyan", Name, "#00ffff"),
+    ("magenta", Name, "#ff00ff"),
+    ("brown", Name, "#a52a2a"),
+    ("ellipsoid", Name, "sphere"),
+    ("linear_extrude", Name, "extrude"),
+    ("prism", Name, "extrude"),
+    ("rotate_extrude", Name, "revolve"),
+    ("lathe", Name, "revolve"),
+    ("sor", Name, "revolve"),
+    ("isosurface", Name, "implicit"),
+    ("len", Name, "count"),
+    ("norm", Name, "length"),
+    ("vlength", Name, "length"),
+    ("PI", Name, "pi"),
+    ("Pi", Name, "pi"),
+    ("translate", Method, "move"),
+    ("translated", Method, "move"),
+    ("position", Method, "move"),
+    ("rotateX", Method, "rotate_x"),
+    ("rotx", Method, "rotate_x"),
+    ("rotateY", Method, "rotate_y"),
+    ("roty", Method, "rotate_y"),
+    ("rotateZ", Method, "rotate_z"),
+    ("rotz", Method, "rotate_z"),
+    ("radius", Argument, "r"),
+    ("height", Argument, "h"),
+    ("center", Argument, "at"),
+    ("centre", Argument, "at"),
+    ("origin", Argument, "at"),
+    ("target", Argument, "look_at"),
+    ("lookat", Argument, "look_at"),
+    ("fovy", Argument, "fov"),
+    ("spp", Argument, "samples"),
+    ("power", Argument, "intensity"),
+    ("brightness", Argument, "intensity"),
+];
+
+/// The word of ours that means the same.
+pub fn same(word: &str, place: Place) -> Option<&'static str> {
+    SAME.iter().find(|(theirs, at, _)| *at == place && *theirs == word).map(|(_, _, ours)| *ours)
+}
+
 /// What to write instead of a word.
 pub fn instead(word: &str, place: Place) -> Option<&'static str> {
+    if place == Name && same(word, Name).is_some_and(|ours| ours.starts_with('#')) {
+        return Some("colours are written by their red, green and blue: `#ff0000`");
+    }
     HABITS.iter().find(|(words, at, _)| *at == place && words.contains(&word)).map(|(_, _, help)| *help)
 }

@@ -85,7 +85,7 @@ fn linear(machine: &mut Machine, expr: &Expr) -> Eval<Linear> {
             }
             Ok(sum)
         }
-        _ if order::uses(expr, &["x", "y", "z"]) => Err(bent(expr.at).into()),
+        _ if order::uses(expr, &["x", "y", "z"]).0 => Err(bent(expr.at).into()),
         _ => {
             let constant = machine.located(expr)?.number("the condition")?;
             Ok(Linear { normal: DVec3::ZERO, constant })

@@ -2,14 +2,16 @@
 //! `render` and what is drawn.
 
 use std::cell::Cell;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::ast::{Arg, Args, Item, ItemKind, Word};
+use super::budget::Budget;
 use super::defines::{self, Define};
 use super::eval::{Machine, later};
 use super::modules::{self, Module};
 use super::scope::Locals;
+use super::unknown::words;
 use super::value::{Eval, Located, Record, Stop, Val};
 use super::{Read, Reading, check, order, parse, print, sets, span, split, units};
 use crate::diag::{Diagnostic, nearest};
@@ -46,10 +48,13 @@ pub fn read(sources: &mut SourceMap, file: FileId, reading: &Reading, defines: &
         module: 0,
         locals: Locals::default(),
         calls: 0,
-        steps: 0,
+        depth: 0,
+        budget: Budget::new(reading.memory),
         binding: None,
+        words: words(reading.catalog),
         materials: Vec::new(),
         warnings: Vec::new(),
+        warned: HashSet::new(),
         geometry: reading.geometry,
         bars: Cell::new(0.0),
     };
@@ -300,7 +305,7 @@ impl Reader<'_> {
             }
             // Whoever renders or probes does not ask whether a scene keeps its promises.
             ItemKind::Expect(expect) if self.expects => {
-                let unmet = self.machine.expect(expect, item.at)?;
+                let unmet = self.machine.expect(expect)?;
                 self.unmet.extend(unmet);
             }
             _ => {}
@@ -342,7 +347,7 @@ impl Reader<'_> {
 
     fn draw(&mut self, attributes: &[Word], value: &Located) -> Eval<()> {
         let mut draws: Vec<Draw> = Vec::new();
-        for operand in sets::flatten(value, "draw")? {
+        for operand in sets::flatten(value, "draw", &self.machine.budget)? {
             draws.push(Draw { shape: operand.shape, at: operand.at });
         }
         if let Val::Shape(_) = value.value {
@@ -357,9 +362,11 @@ impl Reader<'_> {
                 "ghost" => return Err(later("@ghost", word.at).into()),
                 other => {
                     let error = Diagnostic::error("E0401", format!("`@{other}` is not known"));
+                    let near = nearest(other, ATTRIBUTES);
                     return Err(error
                         .at(word.at, "unknown attribute")
-                        .help(match nearest(other, ATTRIBUTES) {
+                        .fix_with(word.at, near)
+                        .help(match near {
                             Some(near) => format!("did you mean `@{near}`?"),
                             None => "the attributes are `@ghost` `@only` `@skip`".to_owned(),
                         })

@@ -23,12 +23,12 @@ pub const KEYWORDS: [Keyword; 24] = [
     line(
         "param",
         "param name: type = default in lowest..highest \"description\"",
-        "A value that `-D name=...` sets.",
+        "A value that the command line can set: `-D name=value`. The types are number, int, length, angle, color, vector, string and bool.",
     ),
     line(
         "import",
         "import \"file.pss\" as name",
-        "Makes the names of another file known; without `as` among those of this one.",
+        "Makes the names of another file known; without `as` among those of this one. What that file draws is not drawn; what it prints is printed.",
     ),
     line(
         "material",
@@ -38,10 +38,22 @@ pub const KEYWORDS: [Keyword; 24] = [
     line("camera", "camera name(eye: [x, y, z], look_at: [x, y, z])", "Where the picture is seen from."),
     line("light", "light name(direction: [x, y, z])", "A sun, a point of light or a sky."),
     line("render", "render(size: [width, height])", "How the picture is made."),
-    line("units", "units(mm)", "What a length of 1 is; `mm` where nothing is said."),
-    line("draw", "draw shape", "Shows a shape, or a list of shapes."),
+    line(
+        "units",
+        "units(mm)",
+        "What a length without a unit is in: um, mm, cm, m, km, in or ft; mm where nothing is said.",
+    ),
+    line(
+        "draw",
+        "draw shape",
+        "Shows a shape, or a list of shapes. After `@only` nothing else is shown, after `@skip` it is left out.",
+    ),
     line("print", "print value", "Writes a value to standard error."),
-    line("expect", "expect condition", "States what must hold; `check` and `test` evaluate it."),
+    line(
+        "expect",
+        "expect condition",
+        "States what must hold; `check` and `test` evaluate it, `render` does not. `a ~= b` alone allows 1e-7 % of b.",
+    ),
     line("if", "if condition { a } else { b }", "One of two values."),
     line(
         "else",
@@ -51,7 +63,7 @@ pub const KEYWORDS: [Keyword; 24] = [
     line(
         "for",
         "for i in 0..5 { value }",
-        "A list: the value of the block for each element of a list or a range.",
+        "A list: the value of the block for each element of a list or a range. Several names make all pairs: `for x in 0..3, y in 0..2 { ... }`.",
     ),
     line("in", "for i in list { value }", "Before the list of a loop, or before what a parameter may be."),
     line("is", "expect a is b", "Between the two sides of an expectation, which must be equal."),

@@ -2,7 +2,7 @@
 
 use super::args::{Bound, Formal};
 use super::builtins::Builtin;
-use super::flow::{elements, range_count};
+use super::flow::{elements, range_count, room};
 use super::value::{Eval, List, Val};
 use crate::num::hash::{Stream, mix};
 
@@ -38,24 +38,27 @@ fn count(bound: &Bound) -> Eval<Val> {
     let list = bound.need("list")?;
     Ok(Val::Number(match &list.value {
         Val::Range(lo, hi, _) => range_count(*lo, *hi) as f64,
-        _ => elements(list, "list")?.len() as f64,
+        Val::List(list) => list.items.len() as f64,
+        _ => return Err(list.unlike("list", "a list").help("write a list: `[a, b]`").into()),
     }))
 }
 
 fn concat(bound: &Bound) -> Eval<Val> {
-    let mut all = elements(bound.need("a")?, "a")?;
-    all.extend(elements(bound.need("b")?, "b")?);
-    List::value(all, bound.callee.at)
+    let at = bound.callee.at;
+    let a = elements(bound.need("a")?, "a", bound.budget)?;
+    let b = elements(bound.need("b")?, "b", bound.budget)?;
+    room((a.len() + b.len()).saturating_sub(1), at)?;
+    List::value([a, b].concat(), bound.budget, at)
 }
 
 fn sum(bound: &Bound) -> Eval<Val> {
-    let list = elements(bound.need("list")?, "list")?;
+    let list = elements(bound.need("list")?, "list", bound.budget)?;
     let Some(first) = list.first().and_then(|first| first.value.numbers()) else {
         let numbers = list.iter().map(|item| item.number("list")).collect::<Eval<Vec<f64>>>()?;
         return Ok(Val::Number(numbers.iter().sum()));
     };
     let mut total = vec![0.0; first.len()];
-    for item in &list {
+    for item in list.iter() {
         let v = item.vector("list", total.len())?;
         total.iter_mut().zip(v).for_each(|(sum, x)| *sum += x);
     }

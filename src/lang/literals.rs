@@ -38,6 +38,17 @@ pub fn number(text: &str, at: Span) -> Result<ExprKind, Box<Diagnostic>> {
         .into())
 }
 
+/// The warning that a number, which reads as zero, was written as something else.
+pub fn lost(text: &str, at: Span) -> Option<Diagnostic> {
+    let digits = text[..scan::digits_len(text)].split(['e', 'E']).next().unwrap_or_default();
+    let told = || {
+        Diagnostic::warning("W0202", format!("`{text}` is too small for a number: it is 0"))
+            .at(at, "lost")
+            .help("choose smaller units, such as `units(um)`")
+    };
+    digits.contains(|c: char| c.is_ascii_digit() && c != '0').then(told)
+}
+
 fn spaced(digits: &str, name: &str) -> String {
     match name {
         "pi" | "tau" => format!("write `{digits} * {name}`"),

@@ -4,6 +4,7 @@
 mod args;
 mod arithmetic;
 pub mod ast;
+mod budget;
 mod builtins;
 mod chains;
 mod check;
@@ -36,9 +37,12 @@ pub mod reference;
 mod scan;
 mod scope;
 mod sets;
+mod signs;
+mod slips;
 mod split;
 mod syntax;
 mod units;
+mod unknown;
 mod value;
 
 use std::ops::Range;
@@ -61,6 +65,9 @@ pub(crate) use units::LENGTHS;
 /// Stack for the deepest nesting allowed, with room to spare; only what is used is ever touched.
 const STACK_BYTES: usize = 256 << 20;
 
+/// Bytes that the values of a scene may take, about, where nothing else is said.
+pub const MEMORY: u64 = 4 << 30;
+
 /// What reading a scene may use.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
@@ -74,6 +81,8 @@ pub struct Reading<'a> {
     pub geometry: Option<&'a dyn Geometry>,
     /// Whether `expect` items are evaluated.
     pub expects: bool,
+    /// Bytes that its values may take, about; parsing takes some seventy times the text beside.
+    pub memory: u64,
 }
 
 /// Reads imported files.
@@ -104,7 +113,7 @@ pub fn read(
     catalog: &Catalog,
     defines: &[(String, String)],
 ) -> Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>> {
-    let reading = Reading { catalog, defines, files: None, geometry: None, expects: false };
+    let reading = Reading { catalog, defines, files: None, geometry: None, expects: false, memory: MEMORY };
     read_with(sources, file, &reading).map(|read| (read.scene, read.warnings))
 }
 

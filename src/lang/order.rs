@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 
 use super::ast::{Args, Expr, ExprKind, Function, Item, ItemKind, Step, Word};
+use super::budget::CHEAP;
 use crate::diag::Diagnostic;
 
 /// The name that an item defines in the file.
@@ -120,16 +121,16 @@ impl Walk<'_> {
     }
 }
 
-/// Whether an expression uses one of some names from outside of it.
-pub fn uses(expr: &Expr, names: &[&str]) -> bool {
-    let mut used = Uses { names: Vec::new(), hidden: Vec::new(), takes_condition: &|_| false };
+/// Whether an expression uses one of some names from outside of it; and the steps that it took to tell.
+pub fn uses(expr: &Expr, names: &[&str]) -> (bool, usize) {
+    let mut used = Uses { names: Vec::new(), hidden: Vec::new(), seen: 0, takes_condition: &|_| false };
     used.expr(expr);
-    used.names.iter().any(|n| names.contains(n))
+    (used.names.iter().any(|n| names.contains(n)), (used.seen + used.names.len() * names.len()) / CHEAP)
 }
 
 /// The names that an item uses.
 fn needed<'a>(item: &'a Item, takes_condition: &dyn Fn(&str) -> bool) -> Vec<&'a str> {
-    let mut uses = Uses { names: Vec::new(), hidden: Vec::new(), takes_condition };
+    let mut uses = Uses { names: Vec::new(), hidden: Vec::new(), seen: 0, takes_condition };
     match &item.kind {
         ItemKind::Let(_, value) => uses.expr(value),
         ItemKind::Function(_, function) => uses.function(function),
@@ -149,6 +150,8 @@ struct Uses<'a, 'f> {
     names: Vec<&'a str>,
     /// Names of blocks, loops and parameters around.
     hidden: Vec<&'a str>,
+    /// Names compared and parts looked at.
+    seen: usize,
     takes_condition: &'f dyn Fn(&str) -> bool,
 }
 
@@ -170,6 +173,7 @@ impl<'a> Uses<'a, '_> {
     }
 
     fn expr(&mut self, expr: &'a Expr) {
+        self.seen += 1 + self.hidden.len();
         match &expr.kind {
             ExprKind::Name(name) if self.hidden.contains(&name.as_str()) => {}
             ExprKind::Name(name) => self.names.push(name),

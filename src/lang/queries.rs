@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::args::{Bound, Formal};
+use super::budget;
 use super::builtins::{Builtin, line};
 use super::value::{Eval, List, Located, Record, Val};
 use crate::diag::Diagnostic;
@@ -154,6 +155,7 @@ fn raycast(bound: &Bound) -> Eval<Val> {
     }
     let hits = ask(bound, |g, asked| g.raycast(asked, from, dir))?;
     let at = bound.callee.at;
+    bound.budget.keep(hits.len() * budget::RECORD, at)?;
     let record = |hit: RayHit| {
         let fields = vec![
             ("t".to_owned(), Val::Number(hit.t)),
@@ -166,5 +168,5 @@ fn raycast(bound: &Bound) -> Eval<Val> {
             at,
         }
     };
-    List::value(hits.into_iter().map(record).collect(), at)
+    List::value(hits.into_iter().map(record).collect(), bound.budget, at)
 }

@@ -5,15 +5,16 @@ use std::fmt::Write;
 use super::args::{self, Formal};
 use super::builtins::{self, Builtin};
 use super::keywords::KEYWORDS;
+use super::signs::SIGNS;
 use crate::scene::{Catalog, Group};
 
 /// A word of the language.
 #[derive(Clone, Debug)]
 pub struct Word {
-    /// The word itself.
+    /// The word itself; words that belong together have blanks between them.
     pub name: String,
     /// Where it belongs.
-    pub chapter: &'static str,
+    pub chapter: Chapter,
     /// How it is written.
     pub call: String,
     /// One sentence.
@@ -26,9 +27,54 @@ pub struct Word {
     pub example: &'static str,
 }
 
-/// The chapters, in order.
-pub const CHAPTERS: [&str; 7] =
-    ["Solids and sheets", "Methods", "Functions", "Constants", "Materials", "Items", "Keywords"];
+/// Where a word belongs, in the order of the page.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Chapter {
+    /// What begins an item and has arguments.
+    Items,
+    /// Words that cannot be names.
+    Keywords,
+    /// Signs, units and attributes.
+    Signs,
+    /// What makes a shape.
+    Solids,
+    /// What changes a shape.
+    Methods,
+    /// What makes other values.
+    Functions,
+    /// Names of numbers.
+    Constants,
+    /// What makes a material.
+    Materials,
+}
+
+impl Chapter {
+    /// All, in order.
+    pub const ALL: [Chapter; 8] = [
+        Chapter::Items,
+        Chapter::Keywords,
+        Chapter::Signs,
+        Chapter::Solids,
+        Chapter::Methods,
+        Chapter::Functions,
+        Chapter::Constants,
+        Chapter::Materials,
+    ];
+
+    /// Its heading.
+    pub fn title(self) -> &'static str {
+        match self {
+            Chapter::Items => "Items",
+            Chapter::Keywords => "Keywords",
+            Chapter::Signs => "Signs and units",
+            Chapter::Solids => "Solids and sheets",
+            Chapter::Methods => "Methods",
+            Chapter::Functions => "Functions",
+            Chapter::Constants => "Constants",
+            Chapter::Materials => "Materials",
+        }
+    }
+}
 
 /// All words, chapter by chapter.
 pub fn words(catalog: &Catalog) -> Vec<Word> {
@@ -38,9 +84,9 @@ pub fn words(catalog: &Catalog) -> Vec<Word> {
         Word {
             name: decl.word.to_owned(),
             chapter: match decl.group {
-                Group::Primitive => CHAPTERS[0],
-                Group::Material => CHAPTERS[4],
-                Group::Camera | Group::Light | Group::Render => CHAPTERS[5],
+                Group::Primitive => Chapter::Solids,
+                Group::Material => Chapter::Materials,
+                Group::Camera | Group::Light | Group::Render => Chapter::Items,
             },
             call: args::signature(decl.word, &formals),
             doc: decl.doc,
@@ -49,15 +95,20 @@ pub fn words(catalog: &Catalog) -> Vec<Word> {
             example: decl.example,
         }
     });
-    let methods = builtins::METHODS.iter().map(|b| builtin(b, CHAPTERS[1], "."));
-    let functions = builtins::functions().map(|b| builtin(b, CHAPTERS[2], ""));
-    let constants = builtins::CONSTANTS.iter().map(|(name, _, doc)| bare(name, CHAPTERS[3], name, doc));
+    let methods = builtins::METHODS.iter().map(|b| builtin(b, Chapter::Methods, "."));
+    let functions = builtins::functions().map(|b| builtin(b, Chapter::Functions, ""));
+    let constants =
+        builtins::CONSTANTS.iter().map(|(name, _, doc)| bare(name, Chapter::Constants, name, doc));
     // The arguments of `camera`, `light` and `render` are declared.
     let undeclared = KEYWORDS.iter().filter(|k| !catalog.decls.iter().any(|d| d.word == k.word));
-    let keywords = undeclared.map(|k| bare(k.word, CHAPTERS[6], k.usage, k.doc));
+    let keywords = undeclared.map(|k| bare(k.word, Chapter::Keywords, k.usage, k.doc));
+    let signs = SIGNS.iter().map(|sign| Word {
+        example: sign.example,
+        ..bare(&sign.names.join(" "), Chapter::Signs, sign.usage, sign.doc)
+    });
     let mut all: Vec<Word> =
-        declared.chain(methods).chain(functions).chain(constants).chain(keywords).collect();
-    all.sort_by_key(|word| CHAPTERS.iter().position(|chapter| *chapter == word.chapter));
+        declared.chain(methods).chain(functions).chain(constants).chain(keywords).chain(signs).collect();
+    all.sort_by_key(|word| word.chapter);
     all
 }
 
@@ -66,12 +117,12 @@ fn names(formals: &[Formal]) -> Vec<String> {
 }
 
 /// A word without arguments.
-fn bare(name: &str, chapter: &'static str, call: &str, doc: &'static str) -> Word {
+fn bare(name: &str, chapter: Chapter, call: &str, doc: &'static str) -> Word {
     let (name, call) = (name.to_owned(), call.to_owned());
     Word { name, chapter, call, doc, args: Vec::new(), names: Vec::new(), example: "" }
 }
 
-fn builtin(b: &Builtin, chapter: &'static str, before: &str) -> Word {
+fn builtin(b: &Builtin, chapter: Chapter, before: &str) -> Word {
     let arg = |f: &Formal| {
         let need = if f.required { "" } else { "may be left out" };
         [f.name.to_owned(), need.to_owned(), String::new()]
@@ -85,6 +136,15 @@ fn builtin(b: &Builtin, chapter: &'static str, before: &str) -> Word {
         names: names(b.formals),
         example: "",
     }
+}
+
+/// What to write instead of a word of another language, wherever it stands there.
+pub fn instead(word: &str) -> Vec<&'static str> {
+    use super::habits::{Place, instead};
+    let places = [Place::Item, Place::Name, Place::Method, Place::Argument];
+    let mut found: Vec<&str> = places.iter().filter_map(|place| instead(word, *place)).collect();
+    found.dedup();
+    found
 }
 
 impl Word {
@@ -101,6 +161,11 @@ impl Word {
         out
     }
 
+    /// Whether it is this word, or has it among those that belong together.
+    pub fn is(&self, name: &str) -> bool {
+        self.name.split(' ').any(|own| own == name)
+    }
+
     /// All that is known of it, as text.
     pub fn page(&self) -> String {
         let mut out = format!("{}\n\n    {}\n", self.call, self.doc);
@@ -113,7 +178,7 @@ impl Word {
             let _ = writeln!(out, "    {name:width$}  {kind}{sign}{doc}");
         }
         if !self.example.is_empty() {
-            let _ = writeln!(out, "\n    {}", self.example);
+            let _ = writeln!(out, "\n    {}", self.example.replace('\n', "\n    "));
         }
         out
     }
@@ -125,8 +190,8 @@ pub fn page(catalog: &Catalog) -> String {
         "# Words of the language\n\nWritten by `PSS_BLESS=1 cargo test --test lang_reference` from the tables that scenes are read with; `pss explain WORD` prints one.\nArguments without a colon may be given by place, all by name.\n",
     );
     let words = words(catalog);
-    for chapter in CHAPTERS {
-        let _ = writeln!(out, "\n## {chapter}\n");
+    for chapter in Chapter::ALL {
+        let _ = writeln!(out, "\n## {}\n", chapter.title());
         for word in words.iter().filter(|word| word.chapter == chapter) {
             let _ = write!(out, "### `{}`\n\n{}", word.call, word.markdown());
             if !word.args.is_empty() || !word.example.is_empty() {

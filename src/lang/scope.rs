@@ -21,9 +21,11 @@ impl Locals {
         Locals(Some(Arc::new(Binding { name: name.to_owned(), value, outer: self.clone() })))
     }
 
-    /// The value of the innermost of a name.
-    pub fn get(&self, name: &str) -> Option<&Val> {
-        self.bindings().find(|b| b.name == name).map(|b| &b.value)
+    /// The value of the innermost of a name, and how many names were compared.
+    pub fn get(&self, name: &str) -> (Option<&Val>, usize) {
+        let mut seen = 0;
+        let found = self.bindings().inspect(|_| seen += 1).find(|b| b.name == name);
+        (found.map(|b| &b.value), seen)
     }
 
     /// All names, the innermost first.
@@ -53,7 +55,7 @@ mod tests {
     #[test]
     fn inner_names_hide_outer_ones_and_long_lists_are_dropped() {
         let mut locals = Locals::default().with("a", Val::Number(1.0)).with("a", Val::Number(2.0));
-        assert!(matches!(locals.get("a"), Some(Val::Number(2.0))) && locals.get("b").is_none());
+        assert!(matches!(locals.get("a"), (Some(Val::Number(2.0)), 1)) && locals.get("b").0.is_none());
         for i in 0..1_000_000 {
             locals = locals.with("c", Val::Number(f64::from(i)));
         }

@@ -3,6 +3,7 @@
 
 use super::args::{Bound, Formal};
 use super::ast::InfixOp;
+use super::budget::{Budget, OPERAND};
 use super::builtins::Builtin;
 use super::value::{Eval, Located, Val};
 use crate::diag::Diagnostic;
@@ -46,7 +47,7 @@ fn node(op: BooleanOp, operands: Vec<Operand>, at: Span) -> Val {
 
 fn of_list(bound: &Bound, op: BooleanOp) -> Eval<Val> {
     let list = bound.need("list")?;
-    let operands = flatten(list, "list")?;
+    let operands = operands(bound, list)?;
     if operands.is_empty() && op == BooleanOp::Intersection {
         return Err(Diagnostic::error("E0303", "the intersection of an empty list is all of space")
             .at(list.at, "no shapes")
@@ -60,17 +61,25 @@ fn difference(bound: &Bound) -> Eval<Val> {
     let base = bound.need("base")?;
     let shape = base.shape("base")?.clone();
     let mut operands = vec![Operand { shape, at: base.at }];
-    operands.extend(flatten(bound.need("list")?, "list")?);
+    operands.extend(self::operands(bound, bound.need("list")?)?);
     Ok(node(BooleanOp::Difference, operands, bound.callee.at))
 }
 
+/// The operands that a list holds.
+fn operands(bound: &Bound, list: &Located) -> Eval<Vec<Operand>> {
+    let operands = flatten(list, "list", bound.budget)?;
+    bound.budget.keep(operands.len() * OPERAND, list.at)?;
+    Ok(operands)
+}
+
 /// The shapes of a list and of the lists in it.
-pub fn flatten(list: &Located, name: &str) -> Eval<Vec<Operand>> {
+pub fn flatten(list: &Located, name: &str, budget: &Budget) -> Eval<Vec<Operand>> {
     let mut out = Vec::new();
     let mut steps = 0;
     let mut open = vec![list];
     while let Some(next) = open.pop() {
         steps += 1;
+        budget.spend(1, list.at)?;
         if steps > MAX_OPERANDS {
             return Err(Diagnostic::error("E0703", format!("more than {MAX_OPERANDS} shapes in one list"))
                 .at(list.at, "too many")
@@ -141,5 +150,10 @@ pub fn wrong_sign(op: InfixOp, sign: Span, left: &Located, right: &Located) -> D
     };
     let told = format!("`{}` does not combine {} and {}", op.sign(), left.value.kind(), right.value.kind());
     let error = Diagnostic::error("E0202", told).at(sign, "an operator of numbers");
-    error.at(left.at, left.value.kind()).at(right.at, right.value.kind()).help(help)
+    let ours = match op {
+        InfixOp::Add if both => Some("|"),
+        InfixOp::Multiply if both => Some("&"),
+        _ => None,
+    };
+    error.at(left.at, left.value.kind()).at(right.at, right.value.kind()).fix_with(sign, ours).help(help)
 }

@@ -90,7 +90,8 @@ impl Cutter<'_> {
         let word = self.tokens[i].text(self.text);
         self.in_attributes = word == "@" && (begins || self.in_attributes)
             || self.in_attributes && i > 0 && self.tokens[i - 1].text(self.text) == "@";
-        if self.item.is_none() {
+        let open = matches!(self.tokens[i].kind, TokenKind::OpenText | TokenKind::OpenComment);
+        if self.item.is_none() && !open {
             self.no_item(i);
             self.item = Some(Open { start: i, sound: false });
         }
@@ -211,16 +212,24 @@ fn closing_of(opener: &str) -> &'static str {
 /// Something stands where an item should begin; `next` is the token after it.
 pub fn not_an_item(word: &str, next: &str, at: Span) -> Diagnostic {
     let error = Diagnostic::error("E0106", format!("`{}` begins no item", word.escape_debug()));
-    if let Some(help) = habits::instead(word, habits::Place::Item) {
-        return error.at(at, "not an item").help(help);
+    let habit =
+        if word.starts_with('#') && word.len() > 1 && habits::instead(word, habits::Place::Item).is_none() {
+            "#"
+        } else {
+            word
+        };
+    if let Some(help) = habits::instead(habit, habits::Place::Item) {
+        return error.at(at, "not an item").fix_with(at, habits::same(word, habits::Place::Item)).help(help);
     }
     match nearest(word, ITEM_WORDS) {
         _ if next == "=" => {
-            error.at(at, "not an item").help(format!("a name is given once, by `let {word} = ...`"))
+            let error = error.at(at, "not an item").fix(at, format!("let {word}"));
+            error.help(format!("a name is given once, by `let {word} = ...`"))
         }
-        Some(known) => error.at(at, "not a keyword").help(format!("did you mean `{known}`?")),
+        Some(known) => error.at(at, "not a keyword").fix(at, known).help(format!("did you mean `{known}`?")),
         None if next == "(" => {
-            error.at(at, "not an item").help(format!("what is to be seen is drawn: `draw {word}(...)`"))
+            let error = error.at(at, "not an item").fix(at, format!("draw {word}"));
+            error.help(format!("what is to be seen is drawn: `draw {word}(...)`"))
         }
         None => error
             .at(at, "expected an item")
@@ -239,6 +248,7 @@ fn stranger(text: &str, token: &Token, at: Span) -> Diagnostic {
         _ => {
             let found = token.text(text);
             let help = match found {
+                "$" => "surfaces are exact: there is no `$fn`, and no number of facets to set",
                 ";" => "items and expressions need nothing between them: remove it",
                 "'" => "strings stand in double quotes",
                 "?" => "a choice is written `if a { b } else { c }`",
@@ -249,6 +259,7 @@ fn stranger(text: &str, token: &Token, at: Span) -> Diagnostic {
             };
             Diagnostic::error("E0103", format!("`{}` has no meaning here", found.escape_debug()))
                 .at(at, "unexpected character")
+                .fix_with(at, (found == ";").then_some(""))
                 .help(help)
         }
     }

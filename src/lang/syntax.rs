@@ -3,8 +3,8 @@
 
 use super::keywords::{self, usage};
 use super::scan::{Token, TokenKind, tokens};
+use super::span;
 use super::split::{ITEM_WORDS, not_an_item};
-use super::{span, units};
 use crate::diag::Diagnostic;
 use crate::source::{FileId, Span};
 
@@ -33,7 +33,7 @@ impl Refused<'_> {
         scene.explain()
     }
 
-    fn place(&self, token: &Token) -> Span {
+    pub(super) fn place(&self, token: &Token) -> Span {
         span(self.file, self.base + token.range.start..self.base + token.range.end)
     }
 
@@ -56,6 +56,12 @@ impl Refused<'_> {
             return Diagnostic::error("E0101", "a number ends with its point")
                 .at(self.place(point), "digits are missing")
                 .help(format!("write `{}.0`", number.text(self.text)));
+        }
+        let has = |word: &str| all.iter().any(|t| t.text(self.text) == word);
+        if word == "}" && has("if") && !has("else") {
+            return Diagnostic::error("E0101", "an `if` without an `else` has no value")
+                .at(at, "expected `else`")
+                .help("write `if a { b } else { c }`; a list of nothing is `[]`");
         }
         let error = Diagnostic::error("E0101", format!("the item ends after `{word}`"));
         if last.ends_operand(self.text) {
@@ -101,6 +107,22 @@ fn header(item: &str, all: &[Token], i: usize, refused: &Refused, at: Span) -> O
                 .help(format!("write {}", usage(item))),
         );
     }
+    if i == 1 && item == "import" && all.get(i).is_some_and(|t| t.kind != TokenKind::Text) {
+        return Some(
+            Diagnostic::error("E0101", "the name of a file stands in quotes")
+                .at(at, "expected `\"`")
+                .help(format!("write {}", usage(item))),
+        );
+    }
+    let signed = || all[..i].iter().any(|t| t.text(refused.text) == "=");
+    if item == "fn" && found == Some("{") && !signed() {
+        return Some(
+            Diagnostic::error("E0101", "a function has `=` before its value")
+                .at(at, "expected `=`")
+                .fix(Span { end: at.start, ..at }, "= ")
+                .help("write `fn f(x) = { ... }`"),
+        );
+    }
     let wants_arguments = matches!(
         (item, i),
         ("render" | "units" | "camera" | "light", 1) | ("material" | "camera" | "light", 2)
@@ -116,17 +138,20 @@ fn header(item: &str, all: &[Token], i: usize, refused: &Refused, at: Span) -> O
 }
 
 /// The place of a mistake and what stands around it.
-struct Slip<'a> {
-    refused: &'a Refused<'a>,
-    all: &'a [Token],
-    i: usize,
-    found: &'a Token,
-    before: Option<&'a Token>,
-    bracket: Option<(&'a Token, usize)>,
+pub(super) struct Slip<'a> {
+    pub refused: &'a Refused<'a>,
+    /// The tokens of the item.
+    pub all: &'a [Token],
+    /// The one that does not fit.
+    pub i: usize,
+    pub found: &'a Token,
+    pub before: Option<&'a Token>,
+    /// The innermost bracket that is open there, and its token.
+    pub bracket: Option<(&'a Token, usize)>,
 }
 
 impl Slip<'_> {
-    fn text(&self, token: &Token) -> &str {
+    pub fn text(&self, token: &Token) -> &str {
         token.text(self.refused.text)
     }
 
@@ -138,8 +163,8 @@ impl Slip<'_> {
             return error;
         }
         let after_value = self.before.is_some_and(|t| t.ends_operand(self.refused.text));
-        if let Some((message, label, help)) = self.common(word, after_value) {
-            return Diagnostic::error("E0101", message).at(at, label).help(help);
+        if let Some(error) = self.named(word, after_value) {
+            return error;
         }
         if self.bracket.is_none()
             && after_value
@@ -150,133 +175,6 @@ impl Slip<'_> {
             return not_an_item(word, next, at);
         }
         if after_value { self.after_value(word, at) } else { self.want_value(word, at) }
-    }
-
-    /// Slips that have a name: message, label and help.
-    fn common(&self, word: &str, after_value: bool) -> Option<(String, String, String)> {
-        let before = self.before.map_or("", |t| self.text(t));
-        let next = self.all.get(self.i + 1);
-        let number_next =
-            next.filter(|t| t.kind == TokenKind::Number && t.range.start == self.found.range.end);
-        let told = |a: String, b: &str, c: String| Some((a, b.to_owned(), c));
-        match word {
-            "." if !after_value && number_next.is_some() => {
-                let digits = next.map_or("", |t| self.text(t));
-                told(
-                    "a number begins with its point".into(),
-                    "digits are missing",
-                    format!("write `0.{digits}`"),
-                )
-            }
-            "." if self.before.is_some_and(|t| t.kind == TokenKind::Number) => told(
-                "a number ends with its point".into(),
-                "digits are missing",
-                format!("write `{before}.0`"),
-            ),
-            "=" if self.bracket.is_some() && after_value => told(
-                "`=` has no place in arguments".into(),
-                "expected `:`",
-                format!("an argument is named with a colon: `{before}: value`"),
-            ),
-            "&" | "|" if before == word => {
-                let meant = if word == "&" { "and" } else { "or" };
-                told(
-                    format!("`{word}{word}` is no operator"),
-                    "one sign too many",
-                    format!("solids take `{word}`, conditions `{meant}`"),
-                )
-            }
-            "+" if !after_value => {
-                told("`+` is no sign of a number".into(), "expected a value", "remove the `+`".into())
-            }
-            "(" | "[" if after_value && self.found.leads_line => told(
-                format!("`{word}` stands on a line of its own"),
-                "what does it belong to?",
-                format!("the `{word}` of a call or an index stands on the line of what it follows"),
-            ),
-            "," => self.comma(),
-            _ => self.brought(word, before, after_value),
-        }
-    }
-
-    /// Habits of other languages.
-    fn brought(&self, word: &str, before: &str, after_value: bool) -> Option<(String, String, String)> {
-        let told = |a: String, b: &str, c: String| Some((a, b.to_owned(), c));
-        let number = self.before.is_some_and(|t| t.kind == TokenKind::Number);
-        let in_list = self.bracket.is_some_and(|(open, _)| self.text(open) == "[");
-        match word {
-            unit if number && units::names().any(|name| name == unit) => told(
-                "a unit touches its number".into(),
-                "a space before it",
-                format!("write `{before}{unit}`"),
-            ),
-            "then" => told("`then` is not needed".into(), "expected `{`", "write `if a { b } else { c }`".into()),
-            "=>" if after_value => told(
-                "a function without a name begins with `fn`".into(),
-                "what are its parameters?",
-                "write `fn(x) => value`".into(),
-            ),
-            ":" if in_list && after_value => told(
-                "`:` makes no range".into(),
-                "expected `,` or `]`",
-                "a range is `0..5`, its end left out; steps are a loop: `for i in 0..5 { 0.5 * i }`".into(),
-            ),
-            "{" if before == ")" => told(
-                "a call is not followed by `{`".into(),
-                "does not fit here",
-                "operands stand in a list: `difference(base, [a, b])`, or between signs: `base - a`".into(),
-            ),
-            "<" if !after_value => told(
-                "a vector stands in square brackets".into(),
-                "not a value",
-                "write `[x, y, z]`".into(),
-            ),
-            "=" if after_value && self.bracket.is_none() => told(
-                "one `=` too many".into(),
-                "does not fit here",
-                "a name is bound once, `let a = 3`; values are compared by `==`".into(),
-            ),
-            _ if after_value
-                && self.bracket.is_none()
-                && self.all.get(self.i + 1).is_some_and(|t| self.text(t) == ":") => told(
-                "arguments stand in parentheses".into(),
-                "does not fit here",
-                "write `sphere(r: 1)`".into(),
-            ),
-            _ if before == ")" && self.found.kind == TokenKind::Word && !self.found.leads_line && self.bracket.is_none() => {
-                told(
-                    format!("`{word}` does not fit after the value"),
-                    "expected an operator or the end of the item",
-                    "what changes a shape is written after it: `shape.move([x, y, z])`, `shape.with(material)`".into(),
-                )
-            }
-            _ => None,
-        }
-    }
-
-    /// A comma that does not fit.
-    fn comma(&self) -> Option<(String, String, String)> {
-        let told = |a: &str, b: &str, c: &str| Some((a.to_owned(), b.to_owned(), c.to_owned()));
-        match self.bracket {
-            None => {
-                told("a comma outside of brackets", "nothing is listed here", "lists stand in `[` and `]`")
-            }
-            Some((open, j))
-                if self.text(open) == "[" && j > 0 && self.all[j - 1].ends_operand(self.refused.text) =>
-            {
-                told(
-                    "an index is one number",
-                    "a second one",
-                    "if a list is meant, put a comma before its `[`",
-                )
-            }
-            Some((open, _)) if self.text(open) == "(" => told(
-                "a value is missing before `,`",
-                "or is a list meant?",
-                "lists stand in `[` and `]`: `[1, 2, 3]`",
-            ),
-            Some(_) => None,
-        }
     }
 
     fn after_value(&self, word: &str, at: Span) -> Diagnostic {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::budget::{Budget, Held, weight};
 use super::functions::Closure;
 use crate::diag::Diagnostic;
 use crate::scene::{MaterialId, Shape};
@@ -95,11 +96,19 @@ pub struct List {
     /// The values.
     pub items: Vec<Located>,
     depth: u32,
+    _held: Option<Held>,
 }
 
 impl List {
-    /// The value of a list; the error says that lists nest too deep.
-    pub fn value(items: Vec<Located>, at: Span) -> Eval<Val> {
+    /// The value of a list; the error says that lists nest too deep, or take too much.
+    pub fn value(items: Vec<Located>, budget: &Budget, at: Span) -> Eval<Val> {
+        let mut held = budget.hold();
+        budget.grow(&mut held, items.iter().map(weight).sum(), at)?;
+        List::held(items, held, at)
+    }
+
+    /// The same where the budget holds the elements already.
+    pub fn held(items: Vec<Located>, held: Held, at: Span) -> Eval<Val> {
         let depth = |i: &Located| if let Val::List(l) = &i.value { l.depth + 1 } else { 1 };
         let depth = items.iter().map(depth).max().unwrap_or(1);
         if depth > MAX_LIST_DEPTH {
@@ -108,7 +117,7 @@ impl List {
                 .help("make one flat list")
                 .into());
         }
-        Ok(Val::List(Arc::new(List { items, depth })))
+        Ok(Val::List(Arc::new(List { items, depth, _held: Some(held) })))
     }
 }
 
@@ -125,7 +134,7 @@ impl Val {
     /// A vector.
     pub fn vector(numbers: impl IntoIterator<Item = f64>, at: Span) -> Val {
         let items = numbers.into_iter().map(|x| Located { value: Val::Number(x), at }).collect();
-        Val::List(Arc::new(List { items, depth: 1 }))
+        Val::List(Arc::new(List { items, depth: 1, _held: None }))
     }
 
     /// The numbers of a vector: a list of two to four numbers.
@@ -206,6 +215,7 @@ impl Located {
                 let fixed = if plain { format!("{written}deg") } else { format!("({written}) * 1deg") };
                 Err(Diagnostic::error("E0502", format!("`{name}` wants an angle, found a bare number"))
                     .at(self.at, "which unit?")
+                    .fix(self.at, &fixed)
                     .help(format!("write `{fixed}`"))
                     .into())
             }

@@ -6,7 +6,7 @@ use super::context::Callee;
 use super::hover::{callees, function, line};
 use super::names::{Binding, Kind, Outline};
 use super::view::{View, is_keyword, is_material, is_method};
-use crate::lang::reference::{CHAPTERS, Word};
+use crate::lang::reference::{Chapter, Word};
 use crate::lang::{ATTRIBUTES, ITEM_WORDS, LENGTHS, TYPES};
 
 /// What may be written at a byte.
@@ -81,7 +81,9 @@ fn values(view: &View, at: usize) -> Vec<CompletionItem> {
     let begins_item = |word: &Word| {
         is_keyword(word) && ITEM_WORDS.contains(&word.name.as_str()) && !matches!(&*word.name, "let" | "fn")
     };
-    out.extend(view.words.iter().filter(|word| !is_method(word) && !begins_item(word)).map(known));
+    let is_sign = |word: &Word| word.chapter == Chapter::Signs;
+    let words = view.words.iter().filter(|word| !is_method(word) && !begins_item(word) && !is_sign(word));
+    out.extend(words.map(known));
     let mut seen = std::collections::HashSet::new();
     out.retain(|item| seen.insert(item.label.clone()));
     out
@@ -150,7 +152,7 @@ fn known(word: &Word) -> CompletionItem {
         _ if is_method(word) => CompletionItemKind::METHOD,
         _ if is_keyword(word) => CompletionItemKind::KEYWORD,
         _ if is_material(word) => CompletionItemKind::CLASS,
-        _ if word.chapter == CHAPTERS[3] => CompletionItemKind::CONSTANT,
+        _ if word.chapter == Chapter::Constants => CompletionItemKind::CONSTANT,
         _ => CompletionItemKind::FUNCTION,
     };
     let page = MarkupContent { kind: MarkupKind::Markdown, value: word.markdown() };

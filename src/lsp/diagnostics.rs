@@ -84,7 +84,14 @@ fn read(
                 .help("keep points in files of their own: `points(\"a.ply\")`"),
         ];
     }
-    let reading = Reading { catalog, defines: &[], files: Some(texts), geometry: None, expects: true };
+    let reading = Reading {
+        catalog,
+        defines: &[],
+        files: Some(texts),
+        geometry: None,
+        expects: true,
+        memory: crate::lang::MEMORY,
+    };
     match read_with(sources, file, &reading) {
         Ok(read) => read.warnings.into_iter().chain(read.unmet).collect(),
         Err(all) => all,

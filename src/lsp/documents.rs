@@ -98,7 +98,12 @@ impl<'a> Texts<'a> {
     }
 
     fn imports(&self) -> Imports<'_> {
-        Imports { scene_dir: &self.folder, allow_read: &self.access.allow_read, limit: self.access.limit }
+        Imports {
+            scene_dir: &self.folder,
+            allow_read: &self.access.allow_read,
+            limit: self.access.limit,
+            inputs: Default::default(),
+        }
     }
 }
 

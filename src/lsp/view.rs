@@ -7,7 +7,7 @@ use super::documents::{Document, Documents, Texts, key_of};
 use super::names::{Binding, Import, Outline};
 use super::uri::uri_of;
 use crate::lang::Files;
-use crate::lang::reference::{CHAPTERS, Word};
+use crate::lang::reference::{Chapter, Word};
 use crate::source::Span;
 
 /// What a request looks at.
@@ -79,7 +79,7 @@ impl<'s> View<'s> {
     /// The words of the language with a name, methods or all others.
     pub fn words(&self, name: &str, methods: bool) -> impl Iterator<Item = &'s Word> {
         let words = self.words.iter().filter(move |word| is_method(word) == methods);
-        words.filter(move |word| word.name == name)
+        words.filter(move |word| word.is(name))
     }
 }
 
@@ -90,15 +90,15 @@ fn owned(file: Imported, name: &str) -> Option<Foreign> {
 
 /// Whether a word stands after a point.
 pub fn is_method(word: &Word) -> bool {
-    word.chapter == CHAPTERS[1]
+    word.chapter == Chapter::Methods
 }
 
 /// Whether a word begins an item, or is written between others.
 pub fn is_keyword(word: &Word) -> bool {
-    word.chapter == CHAPTERS[5] || word.chapter == CHAPTERS[6]
+    matches!(word.chapter, Chapter::Items | Chapter::Keywords)
 }
 
 /// Whether a word is a material.
 pub fn is_material(word: &Word) -> bool {
-    word.chapter == CHAPTERS[4]
+    word.chapter == Chapter::Materials
 }

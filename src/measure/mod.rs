@@ -47,15 +47,6 @@ impl Measuring {
         Measuring { options, known: RefCell::default() }
     }
 
-    /// The files that were read.
-    pub fn inputs(&self) -> Vec<std::path::PathBuf> {
-        let known = self.known.borrow();
-        let mut all: Vec<_> = known.values().flat_map(|(_, known)| known.prepared.inputs.clone()).collect();
-        all.sort();
-        all.dedup();
-        all
-    }
-
     fn known(&self, asked: &Asked) -> Answer<Rc<Known>> {
         let key = Arc::as_ptr(&asked.shape.0);
         if let Some((_, known)) = self.known.borrow().get(&key) {

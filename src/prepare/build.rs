@@ -77,8 +77,6 @@ pub(super) struct Builder<'a> {
     pub thick: Vec<((ScanId, f64), Arc<dyn Solid>)>,
     /// What the user should know.
     pub warnings: Vec<Diagnostic>,
-    /// Files that were read.
-    pub inputs: Vec<PathBuf>,
     /// Time spent on reading them.
     pub loading: Duration,
     /// The work of measuring.
@@ -105,7 +103,6 @@ impl<'a> Builder<'a> {
             moved: Vec::new(),
             thick: Vec::new(),
             warnings: Vec::new(),
-            inputs: Vec::new(),
             loading: Duration::ZERO,
             counts: Counts::default(),
             scans: Vec::new(),
@@ -154,7 +151,7 @@ impl<'a> Builder<'a> {
         Ok(cloud)
     }
 
-    /// The path to open for a name in a scene, remembered as an input.
+    /// The path to open for a name in a scene.
     pub(super) fn input(
         &mut self,
         text: &str,
@@ -162,9 +159,9 @@ impl<'a> Builder<'a> {
         given: bool,
         at: Span,
     ) -> Result<PathBuf, Diagnostic> {
-        let super::Options { scene_dir, allow_read, .. } = self.options;
+        let super::Options { scene_dir, allow_read, inputs, .. } = self.options;
         let path = files::resolve(text, base, given, scene_dir, allow_read, at)?;
-        self.inputs.push(path.clone());
+        inputs.note(&path);
         Ok(path)
     }
 

@@ -1,7 +1,9 @@
 //! Which files a scene may read: those below its own folder and below the folders that the command line allows, and
 //! those that the command line names. Everything else is refused before anything is learned about it.
 
+use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::diag::{Diagnostic, Fault};
 use crate::lang::Files;
@@ -50,8 +52,24 @@ pub(super) fn resolve(
     Ok(path)
 }
 
+/// The files that a scene asks for, whether they can be read or not; copies share one list.
+#[derive(Clone, Debug, Default)]
+pub struct Inputs(Arc<Mutex<BTreeSet<PathBuf>>>);
+
+impl Inputs {
+    /// Adds one.
+    pub fn note(&self, path: &Path) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned());
+    }
+
+    /// All so far, in the order of their names.
+    pub fn list(&self) -> Vec<PathBuf> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+    }
+}
+
 /// Reads what scenes import, by the same rules.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Imports<'a> {
     /// The folder of the scene.
     pub scene_dir: &'a Path,
@@ -59,16 +77,20 @@ pub struct Imports<'a> {
     pub allow_read: &'a [PathBuf],
     /// The longest text, bytes.
     pub limit: u64,
+    /// Where the names of what is asked for are left.
+    pub inputs: Inputs,
 }
 
 impl Files for Imports<'_> {
     fn resolve(&self, written: &str, folder: &Path, at: Span) -> Result<PathBuf, Diagnostic> {
         let path = resolve(written, folder, false, self.scene_dir, self.allow_read, at)?;
         // One file by two names is one file.
-        Ok(path.canonicalize().map_or(path.clone(), |real| {
+        let path = path.canonicalize().map_or(path.clone(), |real| {
             let here = std::env::current_dir().and_then(|here| here.canonicalize()).unwrap_or_default();
             real.strip_prefix(here).map_or(path, Path::to_owned)
-        }))
+        });
+        self.inputs.note(&path);
+        Ok(path)
     }
 
     fn read(&self, path: &Path, at: Span) -> Result<String, Diagnostic> {
@@ -77,7 +99,8 @@ impl Files for Imports<'_> {
                 .at(at, "imported here")
         };
         let missing = |e: std::io::Error| {
-            told(&e.kind().to_string())
+            let none = e.kind() == std::io::ErrorKind::NotFound;
+            told(&if none { "there is no such file".to_owned() } else { e.kind().to_string() })
                 .help("is the name right? It is relative to the file that imports it")
                 .fault(Fault::Missing)
         };

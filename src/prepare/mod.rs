@@ -36,7 +36,7 @@ use crate::solid::point_set::Solidity;
 use crate::solid::{Counts, table};
 
 use build::Builder;
-pub use files::Imports;
+pub use files::{Imports, Inputs};
 use groups::Groups;
 use lower::Lowering;
 pub use outline::{Cutting, Meeting, Outline, Part, Piece};
@@ -60,6 +60,8 @@ pub struct Options {
     pub allow_read: Vec<PathBuf>,
     /// What becomes of scans that are cut short.
     pub cut: Cut,
+    /// Where the names of files asked for are left.
+    pub inputs: Inputs,
     /// Measure the solidity of every scan drawn, even where a picture does not depend on it.
     pub measure_all: bool,
     /// Whether what stands in several places is built anew in each, and not shared, as long as that is not too much: each
@@ -74,8 +76,6 @@ pub struct Prepared {
     pub shot: Shot,
     /// What the user should know.
     pub warnings: Vec<Diagnostic>,
-    /// Files that were read.
-    pub inputs: Vec<PathBuf>,
     /// Time spent on reading them.
     pub loading: Duration,
     /// The work of measuring and sampling.
@@ -129,10 +129,10 @@ pub fn prepare(scene: &Scene, options: &Options) -> Result<Prepared, Vec<Diagnos
         return Err(errors);
     };
     let scans = builder.reports();
-    let Builder { warnings, inputs, loading, counts, .. } = builder;
+    let Builder { warnings, loading, counts, .. } = builder;
     let camera = chosen.unwrap_or_else(|| Camera::fit(world.bounds()));
     let shot = Shot { world, camera, lights, materials, settings };
-    Ok(Prepared { shot, warnings, inputs, loading, counts, scans, outline })
+    Ok(Prepared { shot, warnings, loading, counts, scans, outline })
 }
 
 fn keep<T>(errors: &mut Vec<Diagnostic>, result: Result<T, Diagnostic>) -> Option<T> {

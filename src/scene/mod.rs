@@ -5,15 +5,17 @@ mod decl;
 pub mod formula;
 mod value;
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 pub use decl::{BuildError, Catalog, Decl, Group, Kind, Param};
 pub use formula::Formula;
 pub use value::{Arg, Call, Value};
 
+use crate::deep;
 use crate::source::Span;
 
 /// A whole scene.
@@ -31,6 +33,17 @@ pub struct Scene {
     pub render: Option<Call>,
     /// What the `print` items say, in the order written.
     pub prints: Vec<String>,
+}
+
+/// The most shapes that a scene may be to be written out.
+pub const MAX_WRITTEN_OUT: u64 = 1_000_000;
+
+impl Scene {
+    /// How many shapes it is when written out, as serialising does: those that are used twice count twice.
+    pub fn written_out(&self) -> u64 {
+        let mut known = HashMap::new();
+        self.draws.iter().fold(0, |sum, draw| draw.shape.written_out(&mut known).saturating_add(sum))
+    }
 }
 
 /// An item that may carry a name of its own.
@@ -56,8 +69,15 @@ pub struct Draw {
 pub struct MaterialId(pub u32);
 
 /// A shape as a value: cheap to copy, shared where it was named once and used twice.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 pub struct Shape(pub Arc<ShapeNode>);
+
+/// A chain of operators may be deeper than the stack.
+impl Serialize for Shape {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        deep::step(|| self.0.serialize(to))
+    }
+}
 
 /// A node of the shape's tree and the place of the expression that made it.
 #[derive(Debug, Serialize, Deserialize)]
@@ -72,6 +92,23 @@ impl Shape {
     /// A shape of its own.
     pub fn new(kind: ShapeKind, at: Span) -> Shape {
         Shape(Arc::new(ShapeNode { kind, at }))
+    }
+
+    fn written_out(&self, known: &mut HashMap<*const ShapeNode, u64>) -> u64 {
+        if let Some(count) = known.get(&Arc::as_ptr(&self.0)) {
+            return *count;
+        }
+        let mut add = |sum: u64, part: &Shape| sum.saturating_add(deep::step(|| part.written_out(known)));
+        let mut count = self.0.kind.children().fold(1, &mut add);
+        if let ShapeKind::Leaf { call, .. } = &self.0.kind {
+            let given = call.args.values().filter_map(|arg| match &arg.value {
+                Value::Shape(shape) => Some(shape),
+                _ => None,
+            });
+            count = given.fold(count, &mut add);
+        }
+        known.insert(Arc::as_ptr(&self.0), count);
+        count
     }
 }
 

@@ -135,8 +135,14 @@ pub fn read_with(text: &str, defines: &[(&str, &str)]) -> (Outcome, SourceMap) {
     let defines: Vec<(String, String)> =
         defines.iter().map(|(n, v)| ((*n).to_owned(), (*v).to_owned())).collect();
     let catalog = catalog();
-    let reading =
-        Reading { catalog: &catalog, defines: &defines, files: Some(&Empty), geometry: None, expects: false };
+    let reading = Reading {
+        catalog: &catalog,
+        defines: &defines,
+        files: Some(&Empty),
+        geometry: None,
+        expects: false,
+        memory: pss::lang::MEMORY,
+    };
     let outcome = pss::lang::read_with(&mut sources, file, &reading);
     (outcome.map(|read| (read.scene, read.warnings)), sources)
 }

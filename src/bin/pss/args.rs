@@ -238,6 +238,9 @@ pub struct CheckArgs {
     /// Scene files; `-` for standard input
     #[arg(required = true, value_name = "SCENE")]
     pub scenes: Vec<PathBuf>,
+    /// Mend in the scene files what messages have an edit for, then check
+    #[arg(long)]
+    pub fix: bool,
     /// How they are read.
     #[command(flatten)]
     pub read: ReadArgs,
@@ -276,6 +279,12 @@ pub struct RenderArgs {
     /// Write what was done to a JSON file
     #[arg(long, value_name = "FILE")]
     pub stats_json: Option<PathBuf>,
+    /// Write a rule for `make` that says which files the picture depends on
+    #[arg(long, value_name = "FILE")]
+    pub deps: Option<PathBuf>,
+    /// Stay, and make the picture again whenever the scene or a file that it reads changes
+    #[arg(long)]
+    pub watch: bool,
     /// Say nothing but errors
     #[arg(short, long)]
     pub quiet: bool,

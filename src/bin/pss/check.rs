@@ -6,13 +6,15 @@ use pss::prepare::Options;
 
 use crate::args::CheckArgs;
 use crate::console::{Console, Failure};
+use crate::fix;
 use crate::load::{self, Loaded};
 
 /// Runs the command on all scenes; the exit code is that of the first that failed.
 pub fn run(args: &CheckArgs, console: &Console) -> u8 {
     let mut code = 0;
     for scene in &args.scenes {
-        match check(args, scene, console) {
+        let mended = if args.fix { fix::mend(scene, &args.read, console) } else { Ok(()) };
+        match mended.and_then(|()| check(args, scene, console)) {
             Ok(warnings) => console.note(&summary(scene, warnings)),
             Err(failure) => {
                 let failed = console.fail(&failure);

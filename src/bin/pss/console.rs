@@ -69,13 +69,19 @@ impl From<RenderError> for Failure {
 pub struct Console {
     format: MessageFormat,
     color: bool,
+    silent: bool,
 }
 
 impl Console {
     /// Messages in a format; in colour on a terminal, unless `NO_COLOR` is set.
     pub fn new(format: MessageFormat) -> Console {
         let refused = std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());
-        Console { format, color: !refused && io::stderr().is_terminal() }
+        Console { format, color: !refused && io::stderr().is_terminal(), silent: false }
+    }
+
+    /// One that says nothing.
+    pub fn silent() -> Console {
+        Console { format: MessageFormat::Text, color: false, silent: true }
     }
 
     /// Shows errors and warnings.
@@ -98,7 +104,7 @@ impl Console {
             let internal = diagnostics.iter_mut().find(|d| d.fault == Fault::Internal);
             if let Some(d) = internal {
                 d.notes.push(place);
-                d.help = Some("this is a fault of pss, not of the scene; please report it".to_owned());
+                d.help = Some("this is a fault of pss, not of the scene; please report it".into());
             }
         }
         self.show(&diagnostics, &failure.sources);
@@ -116,7 +122,7 @@ impl Console {
     /// What a scene prints.
     pub fn printed(&self, line: &str) {
         match self.format {
-            MessageFormat::Text => self.say(line),
+            MessageFormat::Text => self.say(&report::printable(line)),
             MessageFormat::Json => {
                 self.say(&serde_json::json!({ "severity": "print", "message": line }).to_string())
             }
@@ -124,8 +130,10 @@ impl Console {
     }
 
     fn say(&self, line: &str) {
-        // Whoever closed standard error does not want to hear of it.
-        let _ = writeln!(io::stderr(), "{line}");
+        if !self.silent {
+            // Whoever closed standard error does not want to hear of it.
+            let _ = writeln!(io::stderr(), "{line}");
+        }
     }
 }
 

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use pss::output::write_whole;
-use pss::source::SourceMap;
 
 use crate::args::FmtArgs;
 use crate::console::{Console, Failure, print};
@@ -24,21 +23,17 @@ pub fn run(args: &FmtArgs, console: &Console) -> Result<u8, Failure> {
 
 /// Whether a file was not in the style.
 fn one(scene: &Path, check: bool, console: &Console) -> Result<bool, Failure> {
-    let text = load::read_scene(scene)?;
-    let stdin = load::is_stdin(scene);
-    let mut sources = SourceMap::default();
-    let name = if stdin { "<stdin>".to_owned() } else { scene.display().to_string() };
-    let file = sources.add(name, None, text.clone());
+    let (sources, file) = load::source(scene)?;
     let formatted = match pss::lang::formatted(&sources, file) {
         Ok(formatted) => formatted,
         Err(errors) => return Err(Failure::new(errors, sources)),
     };
-    let changes = formatted != text;
+    let changes = formatted != sources.file(file).text;
     if check {
         if changes {
             console.note(&format!("{}: not in the house style", scene.display()));
         }
-    } else if stdin {
+    } else if load::is_stdin(scene) {
         print(formatted.as_bytes())?;
     } else if changes {
         write_whole(scene, |out| out.write_all(formatted.as_bytes()))?;

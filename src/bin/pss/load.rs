@@ -37,10 +37,25 @@ pub struct Loaded {
     pub outline: Outline,
     /// All texts read.
     pub sources: SourceMap,
+    /// How many things it draws.
+    pub draws: usize,
     /// How many warnings there were.
     pub warnings: usize,
     /// Expectations that are not met, if they were to be evaluated.
     pub unmet: Vec<Diagnostic>,
+}
+
+/// A scene that was read and understood.
+#[derive(Debug)]
+pub struct Understood {
+    /// What it says, what it warns of, and what does not hold.
+    pub read: SceneRead,
+    /// All texts read.
+    pub sources: SourceMap,
+    /// The scene's own.
+    pub file: FileId,
+    /// What it was read with.
+    pub options: Options,
 }
 
 /// Reads and prepares a scene. `options` holds what the command has to say; what all commands share is filled
@@ -64,40 +79,20 @@ pub fn load_with(
     console: &Console,
 ) -> Result<Loaded, Failure> {
     let start = Instant::now();
-    let mut sources = SourceMap::default();
-    let stdin = is_stdin(scene);
-    let text = read_scene(scene)?;
-    let name = if stdin { "<stdin>".to_owned() } else { scene.display().to_string() };
-    let path = (!stdin).then(|| scene.to_owned());
-    let file = sources.add(name, path, text);
-    let options = Options {
-        scene_dir: if stdin { PathBuf::from(".") } else { folder(scene) },
-        allow_read: args.allow_read.clone(),
-        cut: cut(args.lenient),
-        ..options
-    };
-    let measuring = Measuring::new(&options);
-    let read = match understand(&mut sources, file, args, &options, &measuring, expects) {
-        Ok(read) => read,
-        Err(errors) => return Err(Failure::new(errors, sources)),
-    };
-    let SceneRead { scene: understood, warnings, unmet } = read;
-    if !quiet {
-        console.show(&warnings, &sources);
-    }
-    understood.prints.iter().for_each(|line| console.printed(line));
+    let Understood { read, sources, options, .. } =
+        understand(scene, args, options, [quiet, expects], console)?;
     let parsing = start.elapsed();
     let start = Instant::now();
-    let prepared = match prepare::prepare(&understood, &options) {
+    let prepared = match prepare::prepare(&read.scene, &options) {
         Ok(prepared) => prepared,
         Err(errors) => return Err(Failure::new(errors, sources)),
     };
     if !quiet {
         console.show(&prepared.warnings, &sources);
     }
-    let texts = sources.files().filter_map(|f| f.path.clone());
-    let mut inputs: Vec<PathBuf> = texts.chain(prepared.inputs).collect();
-    inputs.extend(measuring.inputs());
+    let mut inputs: Vec<PathBuf> = sources.files().filter_map(|f| f.path.clone()).collect();
+    let others = options.inputs.list();
+    inputs.extend(others.into_iter().filter(|path| !inputs.contains(path)).collect::<Vec<_>>());
     Ok(Loaded {
         shot: prepared.shot,
         inputs,
@@ -106,32 +101,65 @@ pub fn load_with(
         preparing: start.elapsed().saturating_sub(prepared.loading),
         loading: prepared.loading,
         outline: prepared.outline,
-        warnings: warnings.len() + prepared.warnings.len(),
-        unmet,
+        warnings: read.warnings.len() + prepared.warnings.len(),
+        draws: read.scene.draws.len(),
+        unmet: read.unmet,
         sources,
     })
 }
 
-/// Reads a scene that is among the texts already.
+/// Reads a scene, shows its warnings and what it prints.
 pub fn understand(
-    sources: &mut SourceMap,
-    file: FileId,
+    scene: &Path,
     args: &ReadArgs,
-    options: &Options,
-    measuring: &Measuring,
-    expects: bool,
-) -> Result<SceneRead, Vec<Diagnostic>> {
+    options: Options,
+    [quiet, expects]: [bool; 2],
+    console: &Console,
+) -> Result<Understood, Failure> {
+    let (mut sources, file) = source(scene)?;
+    let options = Options {
+        scene_dir: if is_stdin(scene) { PathBuf::from(".") } else { folder(scene) },
+        allow_read: args.allow_read.clone(),
+        cut: cut(args.lenient),
+        ..options
+    };
     let catalog = prepare::catalog();
-    let imports =
-        Imports { scene_dir: &options.scene_dir, allow_read: &options.allow_read, limit: MAX_SCENE };
+    let imports = Imports {
+        scene_dir: &options.scene_dir,
+        allow_read: &options.allow_read,
+        limit: MAX_SCENE,
+        inputs: options.inputs.clone(),
+    };
+    let measuring = Measuring::new(&options);
     let reading = Reading {
         catalog: &catalog,
         defines: &args.define,
         files: Some(&imports),
-        geometry: Some(measuring),
+        geometry: Some(&measuring),
         expects,
+        memory: pss::lang::MEMORY,
     };
-    pss::lang::read_with(sources, file, &reading)
+    match pss::lang::read_with(&mut sources, file, &reading) {
+        Ok(read) => {
+            if !quiet {
+                console.show(&read.warnings, &sources);
+            }
+            read.scene.prints.iter().for_each(|line| console.printed(line));
+            Ok(Understood { read, sources, file, options })
+        }
+        Err(errors) => Err(Failure::new(errors, sources)),
+    }
+}
+
+/// The text of a scene, with its name.
+pub fn source(scene: &Path) -> Result<(SourceMap, FileId), Failure> {
+    let text = read_scene(scene)?;
+    let mut sources = SourceMap::default();
+    let file = match is_stdin(scene) {
+        true => sources.add("<stdin>".to_owned(), None, text),
+        false => sources.add(scene.display().to_string(), Some(scene.to_owned()), text),
+    };
+    Ok((sources, file))
 }
 
 /// Whether the scene comes from standard input.
@@ -140,13 +168,13 @@ pub fn is_stdin(scene: &Path) -> bool {
 }
 
 /// The folder of a scene.
-pub fn folder(scene: &Path) -> PathBuf {
+fn folder(scene: &Path) -> PathBuf {
     let parent = scene.parent().filter(|p| !p.as_os_str().is_empty());
     parent.unwrap_or(Path::new(".")).to_owned()
 }
 
 /// The text of a scene.
-pub fn read_scene(path: &Path) -> Result<String, Failure> {
+fn read_scene(path: &Path) -> Result<String, Failure> {
     let bytes =
         if is_stdin(path) { read_limited(io::stdin().lock(), MAX_SCENE) } else { read_file(path, MAX_SCENE) };
     let missing = |e: io::Error| {

@@ -5,8 +5,10 @@ mod args;
 mod check;
 mod cloud;
 mod console;
+mod deps;
 mod dump;
 mod explain;
+mod fix;
 mod fmt;
 mod load;
 mod lsp;
@@ -16,6 +18,7 @@ mod render;
 mod stats;
 mod system;
 mod test;
+mod watch;
 
 use std::process::ExitCode;
 

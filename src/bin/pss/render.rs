@@ -7,7 +7,7 @@ use std::time::Instant;
 use pss::diag::{Diagnostic, Fault};
 use pss::film::Film;
 use pss::output::{self, Format};
-use pss::prepare::Options;
+use pss::prepare::{Inputs, Options};
 use pss::render::{Progress, Rendered};
 use pss::shot::{Settings, Shot};
 
@@ -16,18 +16,29 @@ use crate::console::{self, Console, Failure};
 use crate::load::{self, Loaded};
 use crate::progress;
 use crate::stats::{Stages, Stats};
+use crate::{deps, watch};
 
 /// Runs the command.
 pub fn run(args: &RenderArgs, console: &Console) -> Result<(), Failure> {
+    if args.watch { watch::run(args, console) } else { once(args, &Inputs::default(), console) }
+}
+
+/// Makes the picture once. The names of the files that the scene asks for are left in `inputs`, also where it fails.
+pub fn once(args: &RenderArgs, inputs: &Inputs, console: &Console) -> Result<(), Failure> {
     let start = Instant::now();
     let outputs = outputs(args)?;
-    let options = Options { samples: args.spp, seed: args.seed, crop: args.crop, ..args.scene.options() };
+    let inputs = inputs.clone();
+    let options =
+        Options { samples: args.spp, seed: args.seed, crop: args.crop, inputs, ..args.scene.options() };
     let mut loaded = load::load(&args.scene.scene, &args.scene.read, options, args.quiet, console)?;
+    if loaded.draws == 0 && !args.quiet {
+        console.show(&[nothing()], &loaded.sources);
+    }
     if !outputs.iter().any(|path| Format::of(path) == Some(Format::Exr)) {
         // No other format holds layers.
         loaded.shot.settings.aov.clear();
     }
-    for path in outputs.iter().filter(|path| !is_stdout(path)).chain(&args.stats_json) {
+    for path in outputs.iter().filter(|path| !is_stdout(path)).chain(&args.stats_json).chain(&args.deps) {
         output::check(path, &loaded.inputs)?;
     }
     let rendering = Instant::now();
@@ -44,6 +55,10 @@ pub fn run(args: &RenderArgs, console: &Console) -> Result<(), Failure> {
     if let Some(path) = &args.stats_json {
         output::write_whole(path, |sink| io::Write::write_all(sink, stats.json().as_bytes()))?;
     }
+    if let Some(path) = &args.deps {
+        let rule = deps::rule(&outputs, &inputs);
+        output::write_whole(path, |sink| io::Write::write_all(sink, rule.as_bytes()))?;
+    }
     if args.stats {
         console.note(stats.table().trim_end());
     }
@@ -51,6 +66,12 @@ pub fn run(args: &RenderArgs, console: &Console) -> Result<(), Failure> {
         console.note(&format!("wrote {}", outputs[0].display()));
     }
     Ok(())
+}
+
+/// The warning that nothing is drawn.
+fn nothing() -> Diagnostic {
+    let warning = Diagnostic::warning("W0203", "the scene draws nothing: its picture is the background");
+    warning.help("draw something: `draw sphere(r: 1)`")
 }
 
 fn render(args: &RenderArgs, shot: &Shot) -> Result<Rendered, Failure> {
@@ -69,8 +90,15 @@ fn outputs(args: &RenderArgs) -> Result<Vec<PathBuf>, Failure> {
             outputs.push(path.clone());
         }
     }
-    if args.stats_json.as_ref().is_some_and(|stats| outputs.contains(stats)) {
-        return Err(usage("the picture and its statistics cannot share a file"));
+    let others: Vec<&PathBuf> = args.stats_json.iter().chain(&args.deps).collect();
+    if others.iter().any(|other| outputs.contains(other)) || (others.len() == 2 && others[0] == others[1]) {
+        return Err(usage("the picture, its statistics and its dependencies cannot share a file"));
+    }
+    if args.deps.is_some() && outputs.iter().any(|path| is_stdout(path)) {
+        return Err(usage("`--deps` names the picture: give it a file with `-o`"));
+    }
+    if args.watch && (outputs.iter().any(|path| is_stdout(path)) || load::is_stdin(&args.scene.scene)) {
+        return Err(usage("`--watch` wants files: a scene to look at, and a picture to write again"));
     }
     if outputs.iter().any(|path| is_stdout(path)) && io::stdout().is_terminal() {
         return Err(usage("a picture would only confuse the terminal; send standard output elsewhere"));
