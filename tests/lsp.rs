@@ -258,6 +258,31 @@ fn measured_scenes_get_no_false_errors() {
     client.shut_down();
 }
 
+/// A quick fix is the edit of the message, at its place in UTF-16 units, also after a character that has two.
+#[test]
+fn diagnostics_bring_their_edits_as_quick_fixes() {
+    let folder = Folder::new();
+    let (mut client, capabilities) = Client::initialized(&folder, json!({}));
+    assert_eq!(capabilities["capabilities"]["codeActionProvider"], true);
+    let uri = uri(&folder, "a.pss");
+    client.open(&uri, "print \"\u{1f980}\" draw spere(r: 1)\nlet a = y_unknown\n");
+    let told = client.diagnostics(&uri, |list| list.len() == 2);
+    let asked = json!({
+        "textDocument": { "uri": uri },
+        "range": told[0]["range"],
+        "context": { "diagnostics": told },
+    });
+    let actions = client.ask("textDocument/codeAction", asked)["result"].clone();
+    assert_eq!(actions.as_array().map(Vec::len), Some(1), "{actions}");
+    assert_eq!(actions[0]["title"], "Write `sphere`");
+    let edit = &actions[0]["edit"]["changes"][&uri][0];
+    assert_eq!(edit["newText"], "sphere");
+    assert_eq!(
+        edit["range"],
+        json!({ "start": { "line": 0, "character": 16 }, "end": { "line": 0, "character": 21 } })
+    );
+}
+
 #[test]
 fn hovering_shows_pages_and_definitions() {
     let folder = Folder::new();

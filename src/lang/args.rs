@@ -21,28 +21,38 @@ pub struct Formal<'a> {
     pub by_place: bool,
     /// Whether the call is wrong without it.
     pub required: bool,
+    /// What it must be and what it does, for the reference.
+    pub doc: &'a str,
 }
 
 impl<'a> Formal<'a> {
     /// A needed argument, by place or by name.
     pub const fn place(name: &'a str) -> Formal<'a> {
-        Formal { name, by_place: true, required: true }
+        Formal { name, by_place: true, required: true, doc: "" }
     }
 
     /// A needed argument, by name.
     pub const fn named(name: &'a str) -> Formal<'a> {
-        Formal { name, by_place: false, required: true }
+        Formal { name, by_place: false, required: true, doc: "" }
     }
 
     /// The same, but it may be left out.
     pub const fn optional(self) -> Formal<'a> {
         Formal { required: false, ..self }
     }
+
+    /// The same with what it is.
+    pub const fn is(self, doc: &'a str) -> Formal<'a> {
+        Formal { doc, ..self }
+    }
 }
 
 /// The formal arguments of a declaration.
 pub fn formals(decl: &Decl) -> Vec<Formal<'_>> {
-    decl.params.iter().map(|p| Formal { name: p.name, by_place: p.by_place, required: p.required }).collect()
+    decl.params
+        .iter()
+        .map(|p| Formal { name: p.name, by_place: p.by_place, required: p.required, doc: p.doc })
+        .collect()
 }
 
 /// How a call is written: `sphere(r:, at:)`, arguments by place without a colon.

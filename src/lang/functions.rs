@@ -123,7 +123,7 @@ const CALLED: &str = "in ";
 
 /// A parameter as an argument that may be given.
 pub fn formal(param: &Formal) -> super::args::Formal<'_> {
-    super::args::Formal { name: &param.name.text, by_place: true, required: param.default.is_none() }
+    super::args::Formal { name: &param.name.text, by_place: true, required: param.default.is_none(), doc: "" }
 }
 
 fn told_at(stop: Stop, at: Span, label: &str) -> Stop {

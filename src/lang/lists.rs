@@ -6,11 +6,12 @@ use super::flow::{elements, range_count, room};
 use super::value::{Eval, List, Val};
 use crate::num::hash::{Stream, mix};
 
-const LIST: &[Formal] = &[Formal::place("list")];
-const LISTS: &[Formal] = &[Formal::place("a"), Formal::place("b")];
+const LIST: &[Formal] = &[Formal::place("list").is("a list or a range")];
+const LISTS: &[Formal] =
+    &[Formal::place("a").is("a list or a range"), Formal::place("b").is("a list or a range")];
 const SEEDS: &[Formal] = &[
-    Formal::place("seed"),
-    Formal::place("i").optional(),
+    Formal::place("seed").is("a number"),
+    Formal::place("i").optional().is("a number, and so on: the same numbers give the same value"),
     Formal::place("j").optional(),
     Formal::place("k").optional(),
     Formal::place("l").optional(),

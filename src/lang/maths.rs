@@ -7,14 +7,26 @@ use super::units;
 use super::value::{Eval, Located, Val};
 use crate::diag::Diagnostic;
 
-const X: &[Formal] = &[Formal::place("x")];
-const V: &[Formal] = &[Formal::place("v")];
+const X: &[Formal] = &[Formal::place("x").is("a number, or a vector: each of its numbers")];
+const V: &[Formal] = &[Formal::place("v").is("a vector")];
 const AB: &[Formal] = &[Formal::place("a"), Formal::place("b")];
-const ANGLE: &[Formal] = &[Formal::place("angle")];
-const CLAMP: &[Formal] = &[Formal::place("x"), Formal::place("lo"), Formal::place("hi")];
-const MIX: &[Formal] = &[Formal::place("a"), Formal::place("b"), Formal::place("t")];
+const ANGLE: &[Formal] = &[Formal::place("angle").is("an angle: `30deg`")];
+const CLAMP: &[Formal] = &[
+    Formal::place("x").is("a number"),
+    Formal::place("lo").is("the least"),
+    Formal::place("hi").is("the most"),
+];
+const MIX: &[Formal] = &[
+    Formal::place("a").is("where t is 0"),
+    Formal::place("b").is("where t is 1"),
+    Formal::place("t").is("a number"),
+];
 const YX: &[Formal] = &[Formal::place("y"), Formal::place("x")];
-const RGB: &[Formal] = &[Formal::place("r"), Formal::place("g"), Formal::place("b")];
+const RGB: &[Formal] = &[
+    Formal::place("r").is("a number, linear, from 0 to 1"),
+    Formal::place("g").is("the same"),
+    Formal::place("b").is("the same"),
+];
 
 /// The functions.
 pub const TABLE: &[Builtin] = &[

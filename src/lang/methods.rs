@@ -10,20 +10,34 @@ use super::value::{Eval, Val};
 use crate::diag::Diagnostic;
 use crate::scene::{FitTo, MaterialId, Operand, Shape, ShapeKind};
 
-const MOVE: &[Formal] = &[Formal::place("by")];
-const TURN: &[Formal] = &[Formal::place("angle"), Formal::named("about").optional()];
-const ROTATE: &[Formal] = &[Formal::named("axis"), Formal::named("by"), Formal::named("about").optional()];
-const SCALE: &[Formal] = &[Formal::place("factor"), Formal::named("about").optional()];
-const MIRROR: &[Formal] = &[Formal::place("axis"), Formal::named("about").optional()];
-const MATRIX: &[Formal] = &[Formal::place("rows")];
-const LIST: &[Formal] = &[Formal::place("list")];
-const AROUND: &[Formal] = &[Formal::place("n"), Formal::named("about").optional()];
-const FIT: &[Formal] =
-    &[Formal::place("at"), Formal::named("height").optional(), Formal::named("size").optional()];
-const WITH: &[Formal] = &[Formal::place("material")];
-const CLOSE: &[Formal] = &[Formal::named("max_hole").optional()];
-const BY: &[Formal] = &[Formal::place("d")];
-const CLIP: &[Formal] = &[Formal::place("solid")];
+const MOVE: &[Formal] = &[Formal::place("by").is("a vector: how far along each axis")];
+const ABOUT: Formal =
+    Formal::named("about").optional().is("a point that stays where it is (default the origin)");
+const TURN: &[Formal] = &[Formal::place("angle").is("an angle: `90deg`"), ABOUT];
+const ROTATE: &[Formal] = &[
+    Formal::named("axis").is("a direction: `[1, 1, 0]`"),
+    Formal::named("by").is("an angle, right-handed about the axis"),
+    ABOUT,
+];
+const SCALE: &[Formal] =
+    &[Formal::place("factor").is("a number, or a vector of one for each axis; none is zero"), ABOUT];
+const MIRROR: &[Formal] =
+    &[Formal::place("axis").is("`\"x\"`, `\"y\"`, `\"z\"`, or the direction across the mirror"), ABOUT];
+const MATRIX: &[Formal] = &[Formal::place("rows").is("3 rows of 4 numbers")];
+const VECTORS: &[Formal] = &[Formal::place("list").is("a list of vectors")];
+const PLACES: &[Formal] =
+    &[Formal::place("list").is("a list of vectors, or of matrices of 3 rows of 4 numbers")];
+const AROUND: &[Formal] = &[Formal::place("n").is("a whole number above zero"), ABOUT];
+const FIT: &[Formal] = &[
+    Formal::place("at").is("a vector: where the middle of the bottom comes"),
+    Formal::named("height").optional().is("a length: its extent along z"),
+    Formal::named("size").optional().is("a length: its longest extent; one of the two is given"),
+];
+const WITH: &[Formal] = &[Formal::place("material").is("a material: a name, or `matte(#b8683c)`")];
+const CLOSE: &[Formal] =
+    &[Formal::named("max_hole").optional().is("a length: the widest hole that is capped (default: any)")];
+const BY: &[Formal] = &[Formal::place("d").is("a length above zero")];
+const CLIP: &[Formal] = &[Formal::place("solid").is("a solid")];
 
 /// The methods.
 pub const TABLE: &[Builtin] = &[
@@ -67,7 +81,7 @@ pub const TABLE: &[Builtin] = &[
     },
     Builtin {
         name: "array",
-        formals: LIST,
+        formals: VECTORS,
         doc: "A copy moved by each vector of a list.",
         call: copies::array,
     },
@@ -79,7 +93,7 @@ pub const TABLE: &[Builtin] = &[
     },
     Builtin {
         name: "instance",
-        formals: LIST,
+        formals: PLACES,
         doc: "A copy at each vector of a list, or placed by each matrix.",
         call: copies::instance,
     },

@@ -70,9 +70,13 @@ pub trait Geometry {
     fn raycast(&self, asked: &Asked, from: DVec3, dir: DVec3) -> Answer<Vec<RayHit>>;
 }
 
-const SHAPE: &[Formal] = &[Formal::place("shape")];
-const POINT: &[Formal] = &[Formal::place("shape"), Formal::place("point")];
-const RAY: &[Formal] = &[Formal::place("shape"), Formal::named("from"), Formal::named("dir")];
+const SHAPE: &[Formal] = &[Formal::place("shape").is("a shape")];
+const POINT: &[Formal] = &[Formal::place("shape").is("a solid"), Formal::place("point").is("a vector")];
+const RAY: &[Formal] = &[
+    Formal::place("shape").is("a shape"),
+    Formal::named("from").is("a vector: where the ray begins"),
+    Formal::named("dir").is("a vector: its direction, in which t is measured"),
+];
 
 /// The functions.
 pub const TABLE: &[Builtin] = &[

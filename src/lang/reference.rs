@@ -124,15 +124,19 @@ fn bare(name: &str, chapter: Chapter, call: &str, doc: &'static str) -> Word {
 
 fn builtin(b: &Builtin, chapter: Chapter, before: &str) -> Word {
     let arg = |f: &Formal| {
-        let need = if f.required { "" } else { "may be left out" };
-        [f.name.to_owned(), need.to_owned(), String::new()]
+        let free = match (f.required, f.doc) {
+            (true, doc) => doc.to_owned(),
+            (false, "") => "may be left out".to_owned(),
+            (false, doc) => format!("{doc}; may be left out"),
+        };
+        [f.name.to_owned(), free, String::new()]
     };
     Word {
         name: b.name.to_owned(),
         chapter,
         call: format!("{before}{}", args::signature(b.name, b.formals)),
         doc: b.doc,
-        args: b.formals.iter().filter(|f| !f.required).map(arg).collect(),
+        args: b.formals.iter().filter(|f| !f.required || !f.doc.is_empty()).map(arg).collect(),
         names: names(b.formals),
         example: "",
     }

@@ -17,25 +17,28 @@ const MAX_OPERANDS: usize = 1_000_000;
 pub const TABLE: &[Builtin] = &[
     Builtin {
         name: "union",
-        formals: &[Formal::place("list")],
+        formals: &[Formal::place("list").is("a list of solids")],
         doc: "Points in any shape of a list; nothing for an empty list.",
         call: |b| of_list(b, BooleanOp::Union),
     },
     Builtin {
         name: "intersection",
-        formals: &[Formal::place("list")],
+        formals: &[Formal::place("list").is("a list of solids")],
         doc: "Points in every solid of a list.",
         call: |b| of_list(b, BooleanOp::Intersection),
     },
     Builtin {
         name: "difference",
-        formals: &[Formal::place("base"), Formal::place("list")],
+        formals: &[
+            Formal::place("base").is("a solid"),
+            Formal::place("list").is("a solid or a list: what is taken away"),
+        ],
         doc: "Points of the base that are in no solid of a list.",
         call: difference,
     },
     Builtin {
         name: "xor",
-        formals: &[Formal::place("list")],
+        formals: &[Formal::place("list").is("a list of solids")],
         doc: "Points in an odd number of the solids of a list.",
         call: |b| of_list(b, BooleanOp::Xor),
     },

@@ -2,7 +2,8 @@
 
 use lsp_server::{ErrorCode, Request};
 use lsp_types::request::{
-    Completion, DocumentSymbolRequest, Formatting, GotoDefinition, HoverRequest, Request as _,
+    CodeActionRequest, Completion, DocumentSymbolRequest, Formatting, GotoDefinition, HoverRequest,
+    Request as _,
 };
 use lsp_types::{
     CompletionParams, CompletionResponse, DocumentFormattingParams, DocumentSymbolParams,
@@ -13,6 +14,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::Access;
+use super::actions::actions;
 use super::completion::complete;
 use super::definition::{Place, definition};
 use super::documents::{Document, Documents};
@@ -48,6 +50,7 @@ impl<'s> Desk<'s> {
             Completion::METHOD => written(self.completion(params(given)?)?),
             GotoDefinition::METHOD => written(self.definition(params(given)?)?),
             DocumentSymbolRequest::METHOD => written(self.symbols(params(given)?)?),
+            CodeActionRequest::METHOD => written(actions(params(given)?)),
             Formatting::METHOD => written(self.formatting(params(given)?)?),
             _ => Err((ErrorCode::MethodNotFound, format!("`{method}` is not known"))),
         }

@@ -4,10 +4,12 @@
 use std::path::{Path, PathBuf};
 
 use lsp_types::{
-    Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, Location, NumberOrString, Range, Uri,
+    Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, Location, NumberOrString, Range, TextEdit,
+    Uri,
 };
 
 use super::Access;
+use super::actions::Mending;
 use super::documents::{Document, Documents, Texts, key_of};
 use super::positions::{Encoding, Lines};
 use super::uri::uri_of;
@@ -136,9 +138,17 @@ impl Page<'_> {
             source: Some("pss".to_owned()),
             message,
             related_information: (!related.is_empty()).then_some(related),
+            data: diagnostic.fix.as_deref().and_then(|fix| self.mending(fix)),
             ..Diagnostic::default()
         };
         (place.uri, out)
+    }
+
+    /// The edit that mends it, as a client gives it back.
+    fn mending(&self, fix: &diag::Fix) -> Option<serde_json::Value> {
+        let Location { uri, range } = self.location(fix.span)?;
+        let edit = TextEdit { range, new_text: fix.text.clone() };
+        serde_json::to_value(Mending { uri, edit }).ok()
     }
 
     fn location(&self, span: Span) -> Option<Location> {

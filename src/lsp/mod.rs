@@ -4,6 +4,7 @@
 //! What the language knows comes from the tables of [`crate::lang`]; what a text binds is found by its tokens alone
 //! ([`names`]), so that a text that is not complete yet has names as well.
 
+mod actions;
 mod answers;
 mod completion;
 mod context;
