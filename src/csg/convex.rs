@@ -3,10 +3,8 @@
 //! that neither the clean-up nor the choice of an owner has a say; all other rays go the long way ([`super::sweep`]), with
 //! the same answers. A leaf costs its own roots so, not also its place among thousands that wait.
 
-use glam::DVec3;
-
 use super::expr::Expr;
-use super::few::reach_at;
+use super::few::far_at;
 use super::object::{Core, Scratch};
 use super::spans::{Boundary, Span};
 use super::tree::Tree;
@@ -111,9 +109,7 @@ impl Convex {
         let none = |t: f64| End { t, leaf: 0, part: 0, next: t };
         let mut ends = [none(f64::NEG_INFINITY), none(f64::INFINITY)];
         for &leaf in &self.leaves {
-            let own = &core.tree.leaves()[leaf as usize];
-            let mut moved = None;
-            let chord = own.chord(own.place.local_ray(ray, &mut moved), &mut scratch.solid)?;
+            let chord = core.tree.leaves()[leaf as usize].chord(ray, &mut scratch.solid)?;
             let [lo, hi] = chord.ends;
             if ends[0].t < lo {
                 ends[0] = End { t: lo, leaf, part: chord.parts[0], next: ends[0].t };
@@ -144,11 +140,9 @@ impl Convex {
         let End { t, leaf, part, next } = ends[which];
         let crossing = Crossing::exact(t, which == 0, part);
         let own = &core.tree.leaves()[leaf as usize];
-        let mut moved = None;
-        let normal: DVec3 = own.normal(own.place.local_ray(ray, &mut moved), &crossing, &mut scratch.solid);
-        let (reach, slope) = (reach_at(core, ray, t), ray.dir.dot(normal).abs());
-        let is_far = |other: f64| 2.0 * reach < (other - t).abs() * slope;
-        if !is_far(next) || !is_far(ends[1 - which].t) {
+        let normal = own.normal_along(ray, &crossing, &mut scratch.solid);
+        let is_far = far_at(core, ray, t, normal);
+        if [next, ends[1 - which].t].iter().any(|other| !is_far((other - t).abs())) {
             return None;
         }
         let filler = if own.material.is_some() { None } else { self.filler.map(|leaf| core.first(leaf)) };

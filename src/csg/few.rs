@@ -7,7 +7,6 @@
 //! closed forms takes a twentieth fewer instructions so.
 
 use super::bundle::Bundle;
-use super::handful::chord;
 use super::object::{Core, Scratch};
 use super::room::Room;
 use super::slots::{Few, Turn};
@@ -166,7 +165,7 @@ impl<'a> Look<'a> {
     /// Asks a leaf and puts its crossings in order; false where there is no room. One that the line passes by needs none.
     #[inline(always)]
     fn take(&mut self, leaf: u32) -> bool {
-        match chord(self.core, leaf, self.ray, self.scratch) {
+        match self.core.tree.leaves()[leaf as usize].chord(self.ray, self.scratch) {
             Some(chord) if chord.is_none() => true,
             Some(chord) => self.room.few.keep(leaf, &chord),
             None => false,
@@ -277,8 +276,7 @@ impl<'a> Look<'a> {
         let hit = self.room.few.hits()[hit];
         let (slot, crossing) = (hit.slot, hit.crossing());
         let leaf = &self.core.tree.leaves()[self.room.few.leaves[slot as usize] as usize];
-        let mut moved = None;
-        leaf.normal(leaf.place.local_ray(self.ray, &mut moved), &crossing, self.scratch)
+        leaf.normal_along(self.ray, &crossing, self.scratch)
     }
 
     /// Whether nothing but what crosses at a change lies so near that the clean-up or the choice of an owner would look at it,
@@ -289,16 +287,13 @@ impl<'a> Look<'a> {
         let normal = self.normal(met);
         let (core, hits) = (self.core, self.room.few.hits());
         let t = hits[turn.from].t;
-        let slope = self.ray.dir.dot(normal).abs();
-        let reach = reach_at(core, self.ray, t);
-        // Of lengths along the normal: a product sooner than a quotient by a slope, which may be none.
-        let is_far = |lo: f64, hi: f64| 2.0 * reach < (hi - lo) * slope;
-        let before = turn.from == 0 || is_far(hits[turn.from - 1].t, t);
-        let behind = hits.get(turn.to).is_none_or(|next| is_far(t, next.t));
-        if !before || !behind || !is_far(t, f64::INFINITY) {
+        let is_far = far_at(core, self.ray, t, normal);
+        let before = turn.from == 0 || is_far(t - hits[turn.from - 1].t);
+        let behind = hits.get(turn.to).is_none_or(|next| is_far(next.t - t));
+        if !before || !behind || !is_far(f64::INFINITY) {
             return Found::Unclear;
         }
-        if is_far(t, self.known) { Found::Answer((met, normal)) } else { Found::More }
+        if is_far(self.known - t) { Found::Answer((met, normal)) } else { Found::More }
     }
 
     /// The boundary at a change that is alone.
@@ -322,12 +317,16 @@ impl<'a> Look<'a> {
     }
 }
 
-/// A length that no clean-up about a crossing at `t` reaches: of no less than the lengths that the long way takes.
+/// Whether so long a stretch of a ray, in multiples of its direction, is longer than any clean-up about a crossing at `t` with
+/// this normal reaches: of no less than the lengths that the long way takes.
 #[inline(always)]
-pub(super) fn reach_at(core: &Core, ray: &Ray, t: f64) -> f64 {
+pub(super) fn far_at(core: &Core, ray: &Ray, t: f64, normal: DVec3) -> impl Fn(f64) -> bool + use<> {
     let length = |v: DVec3| v.abs().element_sum();
     let (scale, point) = (core.bound.scale.max(length(ray.origin)), length(ray.at(t)));
-    2.0 * core.bound.shift + tolerance::cleanup(scale) + tolerance::cleanup(point)
+    let reach = 2.0 * core.bound.shift + tolerance::cleanup(scale) + tolerance::cleanup(point);
+    let slope = ray.dir.dot(normal).abs();
+    // Of lengths along the normal: a product sooner than a quotient by a slope, which may be none.
+    move |stretch| 2.0 * reach < stretch * slope
 }
 
 /// A leaf comes in sight. A closed form is asked sooner than its box is tried.

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::few::reach_at;
+use super::few::far_at;
 use super::object::{Core, Scratch};
 use super::slots::{Few, Turn};
 use super::spans::Boundary;
@@ -116,7 +116,7 @@ impl Handful {
         for (slot, leaf) in self.leaves[..self.count].iter().enumerate() {
             let chord = match slots >> slot & 1 {
                 0 => Chord::NONE,
-                _ => match chord(core, *leaf, ray, scratch) {
+                _ => match core.tree.leaves()[*leaf as usize].chord(ray, scratch) {
                     Some(chord) => chord,
                     None => return false,
                 },
@@ -216,8 +216,7 @@ impl Handful {
         scratch: &mut solid::Scratch,
     ) -> DVec3 {
         let leaf = &core.tree.leaves()[self.leaves[slot] as usize];
-        let mut moved = None;
-        leaf.normal(leaf.place.local_ray(ray, &mut moved), &line.crossing(slot, t), scratch)
+        leaf.normal_along(ray, &line.crossing(slot, t), scratch)
     }
 
     /// Of leaves that cross together the slot of the one that owns the face.
@@ -238,14 +237,6 @@ impl Handful {
             few.keep(*leaf, &Chord { ends: [line.lo[slot], line.hi[slot]], parts: line.parts[slot] });
         }
     }
-}
-
-/// The part of a ray's line that is inside a leaf, if that has a closed form.
-#[inline(always)]
-pub(super) fn chord(core: &Core, leaf: u32, ray: &Ray, scratch: &mut solid::Scratch) -> Option<Chord> {
-    let own = &core.tree.leaves()[leaf as usize];
-    let mut moved = None;
-    own.chord(own.place.local_ray(ray, &mut moved), scratch)
 }
 
 /// Where truth changes: at crossings that all have one t.
@@ -322,9 +313,7 @@ impl Line {
         let t = change.t;
         let met = handful.met(core, change);
         let normal = handful.normal(core, self, met, ray, t, scratch);
-        let (slope, reach) = (ray.dir.dot(normal).abs(), reach_at(core, ray, t));
-        // Of lengths along the normal: a product sooner than a quotient by a slope, which may be none.
-        let is_far = |length: f64| 2.0 * reach < length * slope;
+        let is_far = far_at(core, ray, t, normal);
         let far = is_far(t - self.last(t)) && is_far(self.next(t) - t) && is_far(f64::INFINITY);
         far.then_some((met, normal))
     }

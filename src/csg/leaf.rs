@@ -93,10 +93,12 @@ impl Leaf {
         Answer::whole_line(false)
     }
 
-    /// The part of the line of a ray given in the leaf's frame that is inside, where the leaf knows it in closed form
-    /// ([`Solid::chord`]); counts as [`Leaf::crossings`] does, and tells the same.
-    #[inline]
-    pub(super) fn chord(&self, local: &Ray, scratch: &mut Scratch) -> Option<Chord> {
+    /// The part of a ray's line that is inside, where the leaf knows it in closed form ([`Solid::chord`]); counts as
+    /// [`Leaf::crossings`] does, and tells the same.
+    #[inline(always)]
+    pub(super) fn chord(&self, ray: &Ray, scratch: &mut Scratch) -> Option<Chord> {
+        let mut moved = None;
+        let local = self.place.local_ray(ray, &mut moved);
         let taken = scratch.frame.map(|frame| frame.taken(&self.place.local_from_world.matrix3));
         let chord = self.solid.chord(local, taken.as_ref().unwrap_or(&self.place.lean))?;
         scratch.counts.leaf_queries += 1;
@@ -118,6 +120,13 @@ impl Leaf {
     pub fn normal(&self, local: &Ray, crossing: &Crossing, scratch: &mut Scratch) -> DVec3 {
         scratch.lean = self.lean(scratch);
         self.place.normal_to_world(self.solid.normal(local, crossing, scratch))
+    }
+
+    /// The same of a ray that is not in the leaf's frame.
+    #[inline(always)]
+    pub(super) fn normal_along(&self, ray: &Ray, crossing: &Crossing, scratch: &mut Scratch) -> DVec3 {
+        let mut moved = None;
+        self.normal(self.place.local_ray(ray, &mut moved), crossing, scratch)
     }
 
     /// What is not resolved about a crossing ([`Solid::grain`]), in the frame that the place is given in.

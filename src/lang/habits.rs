@@ -55,6 +55,14 @@ const HABITS: &[(&[&str], Place, &str)] = &[
         Name,
         "read triangles with `mesh(\"part.stl\")`, heights with `heightfield(\"map.png\", size: [x, y, z])`",
     ),
+    (
+        &[
+            "red", "green", "blue", "white", "black", "yellow", "orange", "gray", "grey", "cyan", "magenta",
+            "brown",
+        ],
+        Name,
+        "colours are written by their red, green and blue: `#ff0000`",
+    ),
     (&["hull", "minkowski", "hulling"], Name, HULL),
     (&["blob", "isosurface"], Name, "write `implicit(x**2 + y**2 + z**2 <= 1, inside: box(size: 3))`"),
     (&["len"], Name, "write `count(list)`; the length of a vector is `length(v)`"),
@@ -191,8 +199,5 @@ pub fn same(word: &str, place: Place) -> Option<&'static str> {
 
 /// What to write instead of a word.
 pub fn instead(word: &str, place: Place) -> Option<&'static str> {
-    if place == Name && same(word, Name).is_some_and(|ours| ours.starts_with('#')) {
-        return Some("colours are written by their red, green and blue: `#ff0000`");
-    }
     HABITS.iter().find(|(words, at, _)| *at == place && words.contains(&word)).map(|(_, _, help)| *help)
 }

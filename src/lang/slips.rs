@@ -13,6 +13,11 @@ fn told(message: impl Into<String>, label: &str, help: impl Into<String>) -> Opt
     Some([message.into(), label.to_owned(), help.into()])
 }
 
+/// What to say of a number that ends with its point.
+pub fn ends_with_point(number: &str) -> [String; 3] {
+    ["a number ends with its point".into(), "digits are missing".into(), format!("write `{number}.0`")]
+}
+
 const LOOP: &str = "a loop is a list already: `for i in 0..3 { value }`";
 const TWO: &str = "a block has one value: two make a list, `[a, b]`, or a union, `a | b`";
 
@@ -80,13 +85,8 @@ impl Slip<'_> {
                 let help = format!("write `0.{}`", self.text(digits));
                 told("a number begins with its point", "digits are missing", help)
             }
-            (".", _) if self.after_number() => {
-                told("a number ends with its point", "digits are missing", format!("write `{before}.0`"))
-            }
-            _ if self.ends_in_a_point() => {
-                let number = self.text(&self.all[self.i - 2]);
-                told("a number ends with its point", "digits are missing", format!("write `{number}.0`"))
-            }
+            (".", _) if self.after_number() => Some(ends_with_point(before)),
+            _ if self.ends_in_a_point() => Some(ends_with_point(self.text(&self.all[self.i - 2]))),
             ("+", _) if !after_value => {
                 told("`+` is no sign of a number", "expected a value", "remove the `+`")
             }

@@ -3,8 +3,8 @@
 
 use super::keywords::{self, usage};
 use super::scan::{Token, TokenKind, tokens};
-use super::span;
 use super::split::{ITEM_WORDS, not_an_item};
+use super::{slips, span};
 use crate::diag::Diagnostic;
 use crate::source::{FileId, Span};
 
@@ -53,9 +53,8 @@ impl Refused<'_> {
             && number.kind == TokenKind::Number
             && word == "."
         {
-            return Diagnostic::error("E0101", "a number ends with its point")
-                .at(self.place(point), "digits are missing")
-                .help(format!("write `{}.0`", number.text(self.text)));
+            let [message, label, help] = slips::ends_with_point(number.text(self.text));
+            return Diagnostic::error("E0101", message).at(self.place(point), label).help(help);
         }
         let has = |word: &str| all.iter().any(|t| t.text(self.text) == word);
         if word == "}" && has("if") && !has("else") {
