@@ -27,6 +27,8 @@ fn texts() -> Vec<String> {
     );
     all.push("let a = /* one */ 3 // two\n\n\n\n// three\n/* four\n   five */ let b = [ // six\n1, // seven\n\n2\n// eight\n]\n\n".into());
     all.push("/* a */let a=1/* b */+/* c */2//d\nlet b=-a\nlet c=a - -b\nlet d=[a,-b,!(a<b)]".into());
+    // Found by fuzzing: a bracket that ends a comment opens nothing.
+    all.push("let a = 1 // f(\n\n\n// b\nlet b = 2 /* [ */\n\n// c {\n\n".into());
     let doubled: Vec<String> = all.iter().map(|text| text.replace('\n', "\r\n")).collect();
     let spread: Vec<String> =
         all.iter().map(|text| text.replace(", ", " ,\n  ").replace(" = ", "=")).collect();
@@ -44,4 +46,11 @@ fn what_is_formatted_says_the_same_and_stays_so() {
         seen += 1;
     }
     assert!(150 < seen, "{seen}");
+}
+
+#[test]
+fn comments_between_items_stand_at_the_margin() {
+    let text =
+        "let a = 3\n// one\n// two\nlet b = [ // three\n    1]\n// four (\n\n/* five */\n// six\nlet c = 1\n";
+    assert_eq!(styled(text).as_deref(), Some(text));
 }

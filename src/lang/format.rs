@@ -15,7 +15,8 @@ const STEP: &str = "    ";
 pub fn format(text: &str, file: FileId) -> String {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let begins: Vec<usize> = split::cut(text, file).items.iter().map(|item| item.start).collect();
-    let mut writer = Writer { text, out: String::new(), open: Vec::new(), fresh: true, begun: false };
+    let mut writer =
+        Writer { text, out: String::new(), open: Vec::new(), opened: false, fresh: true, begun: false };
     let all = tokens(text);
     let mut end = 0;
     for (i, token) in all.iter().enumerate() {
@@ -38,6 +39,8 @@ struct Writer<'t> {
     out: String,
     /// For each open bracket, where its line begins in `out`; of those of one line the first indents.
     open: Vec<usize>,
+    /// Whether the last word was a bracket that opens.
+    opened: bool,
     /// Whether nothing stands on the line yet.
     fresh: bool,
     /// Whether the item has a line above this one.
@@ -61,7 +64,7 @@ impl Writer<'_> {
                 false => found.find("*/").map_or(found.len(), |end| end + 2),
             };
             self.breaks(lines, false);
-            self.comment(found[..length].trim_end(), begins_item && 0 < lines);
+            self.comment(found[..length].trim_end(), begins_item);
             rest = &found[length..];
             lines = 0;
             if line {
@@ -101,8 +104,7 @@ impl Writer<'_> {
     }
 
     fn blank_if(&mut self, lines: usize) {
-        let opened = self.out.trim_end_matches('\n').ends_with(['(', '[', '{']);
-        if 0 < lines && !self.out.is_empty() && !self.out.ends_with("\n\n") && !opened {
+        if 0 < lines && !self.out.is_empty() && !self.out.ends_with("\n\n") && !self.opened {
             self.newline();
             self.out.push('\n');
         }
@@ -115,6 +117,7 @@ impl Writer<'_> {
             self.out.push(' ');
         }
         self.out.push_str(&comment.replace('\r', ""));
+        self.opened = false;
         self.fresh = false;
     }
 
@@ -144,7 +147,8 @@ impl Writer<'_> {
         }
         self.out.push_str(token.text(self.text));
         self.begun = true;
-        if token.kind == TokenKind::Open {
+        self.opened = token.kind == TokenKind::Open;
+        if self.opened {
             self.open.push(self.out.rfind('\n').map_or(0, |at| at + 1));
         }
         self.fresh = false;
