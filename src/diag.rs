@@ -10,6 +10,19 @@ pub enum Severity {
     Error,
     /// Something is made, perhaps not what was meant. Never changes an exit code.
     Warning,
+    /// Nothing is wrong, but it is good to know.
+    Remark,
+}
+
+impl Severity {
+    /// As it is printed.
+    pub fn word(self) -> &'static str {
+        match self {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+            Severity::Remark => "note",
+        }
+    }
 }
 
 /// Which kind of failure an error is: it chooses the exit code.
@@ -106,6 +119,11 @@ impl Diagnostic {
     /// A warning.
     pub fn warning(code: &'static str, message: impl Into<String>) -> Diagnostic {
         Diagnostic { severity: Severity::Warning, ..Diagnostic::error(code, message) }
+    }
+
+    /// What is good to know and nothing is wrong with.
+    pub fn remark(code: &'static str, message: impl Into<String>) -> Diagnostic {
+        Diagnostic { severity: Severity::Remark, ..Diagnostic::error(code, message) }
     }
 
     /// Adds a place; the first added is the main one.

@@ -39,6 +39,7 @@ fn one(diagnostic: &Diagnostic, sources: &SourceMap, renderer: &Renderer) -> Str
     let level = match diagnostic.severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
+        Severity::Remark => Level::NOTE,
     };
     let title = level.primary_title(clean(&diagnostic.message)).id(diagnostic.code);
     let mut files: Vec<FileId> = Vec::new();
@@ -191,7 +192,7 @@ pub fn json_line(diagnostic: &Diagnostic, sources: &SourceMap) -> String {
     let start = place.map(|s| sources.locate(s.file, s.start));
     let end = place.map(|s| sources.locate(s.file, s.end.max(s.start)));
     let line = Line {
-        severity: if diagnostic.is_error() { "error" } else { "warning" },
+        severity: diagnostic.severity.word(),
         code: diagnostic.code,
         message: &diagnostic.message,
         file: place.map(|s| sources.file(s.file).name.as_str()),

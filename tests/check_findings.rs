@@ -8,7 +8,7 @@ use check_support::findings;
 finds! {
     a_flush_cutter_shares_faces_with_its_base: "let block = box(size: 2)\nlet bore = cylinder(r: 0.5, h: 2).move([0, 0, -1])\ndraw block - bore\n",
     r#"
-warning[W0121]: faces of `block` and `bore` coincide
+note[W0121]: faces of `block` and `bore` coincide
  --> scene.pss:2:12
   |
 1 | let block = box(size: 2)
@@ -22,7 +22,7 @@ warning[W0121]: faces of `block` and `bore` coincide
 finds! {
     copies_that_touch_share_faces: "draw box(size: 1).array([[0, 0, 0], [1, 0, 0]])\n",
     r#"
-warning[W0121]: faces of copies of `box` coincide
+note[W0121]: faces of copies of `box` coincide
  --> scene.pss:1:6
   |
 1 | draw box(size: 1).array([[0, 0, 0], [1, 0, 0]])
@@ -34,7 +34,7 @@ warning[W0121]: faces of copies of `box` coincide
 finds! {
     faces_meet_through_different_transforms: "let a = box(size: 1).rotate_z(30deg).move([7, 0, 0])\nlet b = box(size: 1).move([0, 0, 1]).rotate_z(30deg).move([7, 0, 0])\ndraw a | b\n",
     r#"
-warning[W0121]: faces of `a` and `b` coincide
+note[W0121]: faces of `a` and `b` coincide
  --> scene.pss:2:9
   |
 1 | let a = box(size: 1).rotate_z(30deg).move([7, 0, 0])
@@ -112,7 +112,7 @@ warning[W0124]: nothing is left of the base of this difference
 finds! {
     cutters_together_can_take_the_whole_base: "draw difference(box([0, 0, 0], [2, 1, 1]), [box([-1, -1, -1], [1, 2, 2]), box([0.5, -1, -1], [3, 2, 2])])\n",
     r#"
-warning[W0121]: faces of `box` and `box` coincide
+note[W0121]: faces of `box` and `box` coincide
  --> scene.pss:1:75
   |
 1 | draw difference(box([0, 0, 0], [2, 1, 1]), [box([-1, -1, -1], [1, 2, 2]), box([0.5, -1, -1], [3, 2, 2])])
@@ -276,7 +276,7 @@ finds! { a_clip_that_leaves_something_is_fine: "draw plane(z: 0).clip(sphere(r: 
 
 finds! { faces_brought_together_by_turns_are_no_film: "let a = box(size: 1).rotate_z(10deg).rotate_x(20deg)\nlet b = box(size: 1, at: [0, 0, 1]).rotate_z(5deg).rotate_z(5deg).rotate_x(8deg).rotate_x(12deg)\ndraw (a | b).move([3, 2, 1])\n",
     r#"
-warning[W0121]: faces of `a` and `b` coincide
+note[W0121]: faces of `a` and `b` coincide
  --> scene.pss:2:9
   |
 1 | let a = box(size: 1).rotate_z(10deg).rotate_x(20deg)
@@ -290,7 +290,7 @@ warning[W0121]: faces of `a` and `b` coincide
 finds! {
     solids_drawn_into_each_other_overlap: "let a = box(size: 2)\ndraw a\ndraw box(size: 2, at: [1.5, 0, 0])\n",
     r#"
-warning[W0121]: faces of `a` and `box` coincide
+note[W0121]: faces of `a` and `box` coincide
  --> scene.pss:3:6
   |
 1 | let a = box(size: 2)
@@ -315,7 +315,7 @@ warning[W0126]: the insides of two solids drawn overlap
 finds! {
     a_solid_drawn_twice_overlaps_itself: "let a = sphere(r: 1)\ndraw [a, a]\n",
     r#"
-warning[W0121]: faces of copies of `a` coincide
+note[W0121]: faces of copies of `a` coincide
  --> scene.pss:1:9
   |
 1 | let a = sphere(r: 1)
@@ -361,7 +361,7 @@ finds! { a_cutter_that_takes_a_sliver_cuts: "draw sphere(r: 1) - sphere(r: 1, at
 finds! {
     of_cutters_that_cut_the_same_one_is_needed: "let c = box(size: 1)\ndraw box(size: 2) - c - c\n",
     r#"
-warning[W0121]: faces of copies of `c` coincide
+note[W0121]: faces of copies of `c` coincide
  --> scene.pss:1:9
   |
 1 | let c = box(size: 1)
@@ -382,7 +382,7 @@ warning[W0122]: this cutter cuts nothing
 finds! {
     of_equal_cutters_in_a_list_the_first_stays: "draw difference(box(size: 4), [sphere(r: 1), sphere(r: 1)])\n",
     r#"
-warning[W0121]: faces of `sphere` and `sphere` coincide
+note[W0121]: faces of `sphere` and `sphere` coincide
  --> scene.pss:1:46
   |
 1 | draw difference(box(size: 4), [sphere(r: 1), sphere(r: 1)])

@@ -21,7 +21,7 @@ warning[W0123]: nothing is left of this part of what is drawn
 finds! {
     a_shape_and_itself_in_a_union_are_told: "let a = sphere(r: 1)\ndraw box(size: 1, at: [4,0,0]) | (a ^ a)\n",
     r#"
-warning[W0121]: faces of copies of `a` coincide
+note[W0121]: faces of copies of `a` coincide
  --> scene.pss:1:9
   |
 1 | let a = sphere(r: 1)
@@ -121,7 +121,7 @@ warning[W0122]: one of the 4 copies of this cutter cuts nothing
 finds! {
     a_small_shared_face_is_seen: "draw box([0,0,0],[10,10,1])\ndraw box([3,3,1],[3.05,3.05,2])\n",
     r#"
-warning[W0121]: faces of `box` and `box` coincide
+note[W0121]: faces of `box` and `box` coincide
  --> scene.pss:2:6
   |
 1 | draw box([0,0,0],[10,10,1])

@@ -58,3 +58,23 @@ fn open_scans_are_refused_where_an_inside_is_wanted() {
     let ran = folder.run(&["check", "a.pss"]);
     assert!(ran.code == 65 && ran.stderr.contains("E0301"), "{}", ran.stderr);
 }
+
+#[test]
+fn every_scene_of_the_project_checks_clean() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = Folder::new();
+    let mut checked = 0;
+    for scenes in ["scenes", "scenes/cookbook"] {
+        for entry in std::fs::read_dir(root.join(scenes)).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_none_or(|e| e != "pss") {
+                continue;
+            }
+            let ran = folder.run(&["check", path.to_str().unwrap()]);
+            assert_eq!(ran.code, 0, "{}", ran.stderr);
+            assert!(ran.stderr.contains(": nothing to complain of"), "{}", ran.stderr);
+            checked += 1;
+        }
+    }
+    assert!(20 <= checked, "{checked} scenes");
+}

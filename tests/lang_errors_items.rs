@@ -42,18 +42,6 @@ error[E0503]: `a` is outside of what it allows
 }
 
 says! {
-    what_is_not_there_yet_says_so: "@ghost draw sphere(r: 1)\n",
-    r#"
-error[E0702]: `@ghost` is not supported yet
- --> scene.pss:1:2
-  |
-1 | @ghost draw sphere(r: 1)
-  |  ^^^^^ understood, but not carried out
-  = help: write the scene without it, or wait for a later version
-"#
-}
-
-says! {
     without_files_and_geometry_nothing_is_imported_or_measured: "let c = volume(sphere(r: 1))\n",
     r#"
 error[E0708]: `volume` cannot be asked here

@@ -47,9 +47,8 @@ fn xorshift(state: &mut u64) -> usize {
 #[test]
 fn the_whole_grammar_is_understood() {
     let (outcome, sources) = read_with(LONG, &[]);
-    let errors = outcome.expect_err("some of it is not carried out yet");
-    let others: Vec<_> = errors.into_iter().filter(|e| e.code != "E0702").collect();
-    assert!(others.is_empty(), "{}", pss::report::text(&others, &sources, false));
+    let errors = outcome.err().unwrap_or_default();
+    assert!(errors.is_empty(), "{}", pss::report::text(&errors, &sources, false));
 }
 
 #[test]

@@ -80,7 +80,13 @@ fn try_render(
     settings: &Settings,
 ) -> Result<Rendered, RenderError> {
     let camera = front();
-    let view = View { camera: &camera, lights, materials: &[Material::Matte { color: CLAY }], settings };
+    let view = View {
+        camera: &camera,
+        lights,
+        materials: &[Material::Matte { color: CLAY }],
+        ghosts: None,
+        settings,
+    };
     render_scenery(scenery, &view, &Progress::default())
 }
 
@@ -139,7 +145,8 @@ fn a_white_body_under_a_white_sky_cannot_be_seen() {
     let settings = settings(4);
     let materials = [Material::Matte { color: [1.0; 3] }];
     let lights = [Light::Sky { color: [1.0; 3] }];
-    let view = View { camera: &camera, lights: &lights, materials: &materials, settings: &settings };
+    let view =
+        View { camera: &camera, lights: &lights, materials: &materials, ghosts: None, settings: &settings };
     let film = render_scenery(&SOLID, &view, &Progress::default()).unwrap().film;
     assert!(film.rgba.iter().all(|pixel| *pixel == [1.0; 4]));
 }
@@ -248,7 +255,7 @@ fn the_seed_changes_the_noise_and_nothing_else_does() {
 fn counts_are_of_all_tiles() {
     let progress = Progress::default();
     let (camera, settings) = (front(), settings(4));
-    let view = View { camera: &camera, lights: &[], materials: &[], settings: &settings };
+    let view = View { camera: &camera, lights: &[], materials: &[], ghosts: None, settings: &settings };
     let rendered = render_scenery(&SOLID, &view, &progress).unwrap();
     assert_eq!(rendered.rays.camera, 41 * 41 * 4);
     assert_eq!(rendered.counts.leaf_queries, 41 * 41 * 4);

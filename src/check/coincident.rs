@@ -23,13 +23,13 @@ fn find(evidence: &Evidence) -> Vec<Diagnostic> {
     let shared = seen.shared.iter().filter(|(_, near)| near.is_area()).map(|(pair, _)| pair);
     let shared = shared.filter(|pair| !seen.films.contains_key(pair));
     let pairs: BTreeSet<_> = shared.map(place).collect();
-    let warn = |(a, b)| match a == b {
-        true => Diagnostic::warning(FINDING.code, format!("faces of copies of `{}` coincide", name(a)))
+    let tell = |(a, b)| match a == b {
+        true => Diagnostic::remark(FINDING.code, format!("faces of copies of `{}` coincide", name(a)))
             .at(a, "these")
             .help(
                 "copies that touch are one solid; a copy that shall cut through another must stand out of it",
             ),
-        false => Diagnostic::warning(
+        false => Diagnostic::remark(
             FINDING.code,
             format!("faces of `{}` and `{}` coincide", name(a), name(b)),
         )
@@ -39,5 +39,5 @@ fn find(evidence: &Evidence) -> Vec<Diagnostic> {
             "nothing is wrong with that; if a cut shall go through, let the cutter stand out of what it cuts",
         ),
     };
-    pairs.into_iter().map(warn).collect()
+    pairs.into_iter().map(tell).collect()
 }

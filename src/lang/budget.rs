@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::value::{Eval, Located, Val};
 use crate::diag::Diagnostic;
-use crate::scene::{Call, Value};
+use crate::scene::{Arg, Call, Value};
 use crate::source::Span;
 
 /// Steps, at most.
@@ -23,7 +23,7 @@ pub const OPERAND: usize = 32;
 pub const CLOSURE: usize = 300;
 pub const RECORD: usize = 1200;
 const CALL: usize = 400;
-const ARGUMENT_LEAF: usize = 1200;
+const ARGUMENT: usize = 32 + size_of::<(String, Arg)>();
 
 /// What is left for an evaluation.
 #[derive(Debug)]
@@ -121,5 +121,5 @@ pub fn call(call: &Call) -> usize {
         Value::Formula(formula) => size_of_val(formula.steps.as_slice()),
         _ => 32,
     });
-    CALL + args.sum::<usize>() + if call.args.is_empty() { 0 } else { ARGUMENT_LEAF }
+    CALL + args.sum::<usize>() + call.args.len() * ARGUMENT
 }

@@ -1,9 +1,9 @@
 //! Calls of declared things: every argument checked against the kind its declaration names.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
+use litemap::LiteMap;
 
 use super::args::{Callee, formals, quoted, wanted};
 use super::ast::{Args, Expr};
@@ -24,7 +24,7 @@ pub fn call(machine: &mut Machine, decl: &Decl, args: &Args, at: Span) -> Eval<C
 pub fn call_without(machine: &mut Machine, decl: &Decl, args: &Args, at: Span, known: &str) -> Eval<Call> {
     let formals = formals(decl);
     let bound = Callee { word: decl.word, at, formals: &formals }.bind(args, known)?;
-    let mut checked = BTreeMap::new();
+    let mut checked = LiteMap::with_capacity(bound.iter().flatten().count());
     for (param, expr) in decl.params.iter().zip(bound) {
         if let Some(expr) = expr {
             let value = argument(machine, param, expr)?;

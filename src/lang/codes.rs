@@ -359,12 +359,7 @@ pub const CODES: &[Code] = &[
         NONE,
     ),
     code("E0701", "Something nests too deep, or is too large to be read.", "Name parts with `let`.", NONE),
-    code(
-        "E0702",
-        "Something is understood but not carried out yet.",
-        "Write the scene without it.",
-        ["@ghost draw sphere(r: 1)", "draw sphere(r: 1)"],
-    ),
+    code("E0702", "Something is understood but not carried out yet.", "Write the scene without it.", NONE),
     code(
         "E0703",
         "There are too many of something.",

@@ -20,15 +20,15 @@ pub fn format(text: &str, file: FileId) -> String {
     let all = tokens(text);
     let mut end = 0;
     for (i, token) in all.iter().enumerate() {
-        let begins_item = begins.binary_search(&token.range.start).is_ok();
+        let begins_item = begins.binary_search(&token.start()).is_ok();
         let before = i.checked_sub(1).map(|i| &all[i]);
         let second = i.checked_sub(2).map(|i| &all[i]);
-        writer.gap(&text[end..token.range.start], begins_item, token);
+        writer.gap(&text[end..token.start()], begins_item, token);
         let space = before.is_some_and(|before| is_spaced(text, second, before, token, all.get(i + 1)));
         let run = all[i..].iter().take_while(|t| t.kind == TokenKind::Close);
         let closers = run.enumerate().take_while(|(k, t)| *k == 0 || !t.leads_line).count();
         writer.token(token, space, begins_item, closers);
-        end = token.range.end;
+        end = token.end();
     }
     writer.rest(&text[end..]);
     writer.out
@@ -157,7 +157,7 @@ impl Writer<'_> {
     /// Comments after the last token.
     fn rest(&mut self, gap: &str) {
         self.begun = false;
-        let end = Token { kind: TokenKind::Sign, range: 0..0, leads_line: true };
+        let end = Token { kind: TokenKind::Sign, start: 0, end: 0, leads_line: true };
         self.gap(gap, true, &end);
         let length = self.out.trim_end().len();
         self.out.truncate(length);

@@ -63,7 +63,7 @@ pub fn read(sources: &mut SourceMap, file: FileId, reading: &Reading, defines: &
         defines,
         expects: reading.expects,
         scene: Scene::default(),
-        only: Vec::new(),
+        only: Default::default(),
         errors,
         unmet: Vec::new(),
         render: None,
@@ -170,8 +170,8 @@ struct Reader<'a> {
     /// Whether expectations are evaluated.
     expects: bool,
     scene: Scene,
-    /// Draws that carry `@only`.
-    only: Vec<Draw>,
+    /// Draws that carry `@only`, and those of them that are ghosts.
+    only: [Vec<Draw>; 2],
     errors: Vec<Diagnostic>,
     /// Expectations that are not met.
     unmet: Vec<Diagnostic>,
@@ -253,8 +253,8 @@ impl Reader<'_> {
             return Err(all);
         }
         scene.materials = machine.materials;
-        if !only.is_empty() {
-            scene.draws = only;
+        if only.iter().any(|draws| !draws.is_empty()) {
+            [scene.draws, scene.ghosts] = only;
         }
         Ok(Read { scene, warnings: all, unmet })
     }
@@ -353,13 +353,12 @@ impl Reader<'_> {
         if let Val::Shape(_) = value.value {
             draws.iter_mut().for_each(|d| d.at = value.at);
         }
-        let mut only = false;
-        let mut skip = false;
+        let [mut only, mut skip, mut ghost] = [false; 3];
         for word in attributes {
             match word.text.as_str() {
                 "only" => only = true,
                 "skip" => skip = true,
-                "ghost" => return Err(later("@ghost", word.at).into()),
+                "ghost" => ghost = true,
                 other => {
                     let error = Diagnostic::error("E0401", format!("`@{other}` is not known"));
                     let near = nearest(other, ATTRIBUTES);
@@ -374,10 +373,13 @@ impl Reader<'_> {
                 }
             }
         }
-        if only && !skip {
-            self.only.extend(draws);
-        } else if !skip {
-            self.scene.draws.extend(draws);
+        let into = match (only, ghost) {
+            (true, _) => &mut self.only[usize::from(ghost)],
+            (false, true) => &mut self.scene.ghosts,
+            (false, false) => &mut self.scene.draws,
+        };
+        if !skip {
+            into.extend(draws);
         }
         Ok(())
     }

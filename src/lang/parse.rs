@@ -100,8 +100,8 @@ impl Build {
     }
 
     fn next_expr(&self, pairs: &mut Pairs<Rule>) -> Parsed<Expr> {
-        let pair = pairs.find(|p| p.as_rule() == Rule::expr).ok_or_else(|| self.lost())?;
-        self.expr(pair)
+        let pair = pairs.find(|p| matches!(p.as_rule(), Rule::expr | Rule::number | Rule::vector));
+        self.expr(pair.ok_or_else(|| self.lost())?)
     }
 
     fn item(&self, mut pairs: Pairs<Rule>) -> Parsed<Item> {
@@ -215,10 +215,15 @@ impl Build {
     }
 
     fn expr(&self, pair: Pair<Rule>) -> Parsed<Expr> {
+        match pair.as_rule() {
+            Rule::number | Rule::vector => return self.atom(pair),
+            Rule::negative => return self.negative(pair),
+            _ => {}
+        }
         let at = self.place(&pair);
         let inner = pair.into_inner().next().ok_or_else(|| self.lost())?;
         let kind = match inner.as_rule() {
-            Rule::plain => return self.plain(inner),
+            Rule::negative => return self.negative(inner),
             Rule::if_expr => return self.condition(inner),
             Rule::for_expr => {
                 let parts = inner.into_inner();
@@ -243,14 +248,10 @@ impl Build {
         Ok(Expr { kind: ExprKind::If(Box::new([asked, self.atom(then)?, otherwise])), at })
     }
 
-    /// A number, or its negative, alone.
-    fn plain(&self, pair: Pair<Rule>) -> Parsed<Expr> {
+    /// The negative of a number, alone.
+    fn negative(&self, pair: Pair<Rule>) -> Parsed<Expr> {
         let mut parts = pair.into_inner();
-        let first = parts.next().ok_or_else(|| self.lost())?;
-        if first.as_rule() != Rule::minus {
-            return self.atom(first);
-        }
-        let sign = self.place(&first);
+        let sign = self.place(&parts.next().ok_or_else(|| self.lost())?);
         let operand = self.atom(parts.next().ok_or_else(|| self.lost())?)?;
         let at = sign.to(operand.at);
         Ok(Expr { kind: ExprKind::Prefix(PrefixOp::Negate, sign, Box::new(operand)), at })
@@ -315,7 +316,9 @@ impl Build {
             Rule::true_kw => ExprKind::Bool(true),
             Rule::false_kw => ExprKind::Bool(false),
             Rule::name => ExprKind::Name(text.to_owned()),
-            Rule::list => ExprKind::List(pair.into_inner().map(|p| self.expr(p)).collect::<Parsed<_>>()?),
+            Rule::list | Rule::vector => {
+                ExprKind::List(pair.into_inner().map(|p| self.expr(p)).collect::<Parsed<_>>()?)
+            }
             Rule::paren => ExprKind::Paren(Box::new(self.next_expr(&mut pair.into_inner())?)),
             _ => self.block(pair)?,
         };

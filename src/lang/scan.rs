@@ -28,21 +28,36 @@ pub enum TokenKind {
     Stranger,
 }
 
-/// A token and its bytes.
-#[derive(Clone, Debug)]
+/// A token and its bytes, which are told in 32 bits as those of a [`Span`](crate::source::Span): long scenes have millions.
+#[derive(Clone, Copy, Debug)]
 pub struct Token {
     /// What it is.
     pub kind: TokenKind,
-    /// Bytes of the text.
-    pub range: Range<usize>,
     /// Whether it is the first on its line.
     pub leads_line: bool,
+    pub(super) start: u32,
+    pub(super) end: u32,
 }
 
 impl Token {
+    /// Where it begins, in bytes of the text.
+    pub fn start(&self) -> usize {
+        self.start as usize
+    }
+
+    /// Where it ends, in bytes of the text.
+    pub fn end(&self) -> usize {
+        self.end as usize
+    }
+
+    /// Its bytes in the text.
+    pub fn range(&self) -> Range<usize> {
+        self.start()..self.end()
+    }
+
     /// Its characters.
     pub fn text<'a>(&self, text: &'a str) -> &'a str {
-        &text[self.range.clone()]
+        &text[self.range()]
     }
 
     /// Whether an operand can end with it.
@@ -87,7 +102,7 @@ pub fn tokens(text: &str) -> Vec<Token> {
         }
         let (kind, len) = token(&text[at..], c);
         if let Some(kind) = kind {
-            out.push(Token { kind, range: at..at + len, leads_line });
+            out.push(Token { kind, leads_line, start: at as u32, end: (at + len) as u32 });
             leads_line = false;
         } else {
             leads_line |= text[at..at + len].contains('\n');

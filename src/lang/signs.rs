@@ -56,7 +56,7 @@ pub const SIGNS: &[Sign] = &[
     line(
         &["@ghost", "@only", "@skip"],
         "@only draw shape",
-        "Attributes of a `draw`: only this is seen, or this is left out, or it is seen through.",
+        "Attributes of a `draw`: it is seen through, or only this is seen, or this is left out. What is seen through casts no shadow, and neither `probe`, a fitted view nor layers know of it; pictures of normals and depth do not show it.",
         "@only draw sphere(r: 1)\ndraw box(size: 9)",
     ),
     line(

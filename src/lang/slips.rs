@@ -79,7 +79,7 @@ impl Slip<'_> {
     fn number(&self, word: &str, after_value: bool) -> Option<[String; 3]> {
         let before = self.before();
         let next = self.all.get(self.i + 1);
-        let digits = next.filter(|t| t.kind == TokenKind::Number && t.range.start == self.found.range.end);
+        let digits = next.filter(|t| t.kind == TokenKind::Number && t.start() == self.found.end());
         match (word, digits) {
             (".", Some(digits)) if !after_value => {
                 let help = format!("write `0.{}`", self.text(digits));

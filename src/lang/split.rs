@@ -84,12 +84,13 @@ impl Cutter<'_> {
             if !self.open.is_empty() {
                 self.unclosed(Some(i));
             }
-            self.close_item(self.tokens[i].range.start);
+            self.close_item(self.tokens[i].start());
             self.item = Some(Open { start: i, sound: true });
         }
-        let word = self.tokens[i].text(self.text);
-        self.in_attributes = word == "@" && (begins || self.in_attributes)
-            || self.in_attributes && i > 0 && self.tokens[i - 1].text(self.text) == "@";
+        let is_at =
+            |i: usize| self.tokens[i].kind == TokenKind::Sign && self.tokens[i].text(self.text) == "@";
+        self.in_attributes =
+            (begins || self.in_attributes) && is_at(i) || self.in_attributes && i > 0 && is_at(i - 1);
         let open = matches!(self.tokens[i].kind, TokenKind::OpenText | TokenKind::OpenComment);
         if self.item.is_none() && !open {
             self.no_item(i);
@@ -114,6 +115,9 @@ impl Cutter<'_> {
     /// forgotten bracket costs one item.
     fn begins_item(&self, i: usize) -> bool {
         let token = &self.tokens[i];
+        if !matches!(token.kind, TokenKind::Sign | TokenKind::Word) {
+            return false;
+        }
         let near = |j: Option<usize>| j.and_then(|j| self.tokens.get(j)).map(|t| (t.kind, t.text(self.text)));
         let (before, after) = (near(i.checked_sub(1)), near(Some(i + 1)));
         let word = token.text(self.text);
@@ -135,7 +139,7 @@ impl Cutter<'_> {
 
     fn close_item(&mut self, end: usize) {
         if let Some(item) = self.item.take() {
-            let range = self.tokens[item.start].range.start..end;
+            let range = self.tokens[item.start].start()..end;
             if item.sound {
                 self.out.items.push(range.clone());
             }
@@ -152,7 +156,7 @@ impl Cutter<'_> {
     }
 
     fn place(&self, i: usize) -> Span {
-        span(self.file, self.tokens[i].range.clone())
+        span(self.file, self.tokens[i].range())
     }
 
     fn close_bracket(&mut self, i: usize) {
@@ -277,6 +281,10 @@ fn too_deep(text: &str, tokens: &[Token]) -> Option<Range<usize>> {
     let mut total = 0;
     let mut after_operand = false;
     for token in tokens {
+        if matches!(token.kind, TokenKind::Number | TokenKind::Text | TokenKind::Color) {
+            after_operand = true;
+            continue;
+        }
         let word = token.text(text);
         let inside = levels.len() > 1;
         let top = levels.last_mut()?;
@@ -295,14 +303,16 @@ fn too_deep(text: &str, tokens: &[Token]) -> Option<Range<usize>> {
                 total -= top.signs + top.tails;
                 *top = Level::default();
             }
-            _ if ITEM_WORDS.contains(&word) || matches!(token.kind, TokenKind::Sign) && word != "." => {
+            _ if token.kind == TokenKind::Word && ITEM_WORDS.contains(&word)
+                || token.kind == TokenKind::Sign && word != "." =>
+            {
                 total -= std::mem::take(&mut top.signs);
             }
             _ => {}
         }
         after_operand = token.ends_operand(text);
         if total > MAX_NESTING {
-            return Some(token.range.clone());
+            return Some(token.range());
         }
     }
     None

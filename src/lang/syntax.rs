@@ -24,7 +24,7 @@ impl Refused<'_> {
     /// The error to show.
     pub fn explain(&self) -> Diagnostic {
         let all = tokens(self.text);
-        let i = all.iter().position(|t| t.range.end > self.stop).unwrap_or(all.len());
+        let i = all.iter().position(|t| t.end() > self.stop).unwrap_or(all.len());
         let before = i.checked_sub(1).and_then(|j| all.get(j));
         let Some(found) = all.get(i) else {
             return self.ended(&all);
@@ -34,7 +34,7 @@ impl Refused<'_> {
     }
 
     pub(super) fn place(&self, token: &Token) -> Span {
-        span(self.file, self.base + token.range.start..self.base + token.range.end)
+        span(self.file, self.base + token.start()..self.base + token.end())
     }
 
     fn ended(&self, all: &[Token]) -> Diagnostic {
@@ -44,7 +44,7 @@ impl Refused<'_> {
                 .help("write a value");
         };
         let word = last.text(self.text);
-        let at = span(self.file, self.base + last.range.end..self.base + last.range.end);
+        let at = span(self.file, self.base + last.end()..self.base + last.end());
         let item = all.first().map_or("", |t| t.text(self.text));
         if let Some(error) = header(item, all, all.len(), self, at) {
             return error;

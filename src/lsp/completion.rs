@@ -16,7 +16,7 @@ pub fn complete(view: &View, at: usize) -> Vec<CompletionItem> {
         return Vec::new();
     }
     // The token that is being written, or the one after the place.
-    let i = outline.word_at(at).unwrap_or_else(|| outline.tokens.partition_point(|t| t.range.start < at));
+    let i = outline.word_at(at).unwrap_or_else(|| outline.tokens.partition_point(|t| t.start() < at));
     let open = outline.open_before(i);
     match outline.before(i) {
         "." => after_point(view, i),
@@ -47,7 +47,7 @@ fn after_point(view: &View, i: usize) -> Vec<CompletionItem> {
 
 /// Whether a new item may begin: at the start of a line, after something that is whole.
 fn begins_item(outline: &Outline, i: usize, open: Option<usize>, at: usize) -> bool {
-    let start = outline.tokens.get(i).map_or(at, |t| t.range.start.min(at));
+    let start = outline.tokens.get(i).map_or(at, |t| t.start().min(at));
     let leads = outline.text[..start].trim_end_matches([' ', '\t']).ends_with(['\n', '\r']);
     match i.checked_sub(1).map(|before| &outline.tokens[before]) {
         None => true,

@@ -21,11 +21,9 @@ pub enum Callee<'t> {
 impl Outline {
     /// The word at a byte, or that ends there.
     pub fn word_at(&self, at: usize) -> Option<usize> {
-        let i = self.tokens.partition_point(|t| t.range.end < at);
+        let i = self.tokens.partition_point(|t| t.end() < at);
         let holds = |i: &usize| {
-            self.tokens
-                .get(*i)
-                .is_some_and(|t| t.kind == TokenKind::Word && t.range.start <= at && at <= t.range.end)
+            self.tokens.get(*i).is_some_and(|t| t.kind == TokenKind::Word && t.start() <= at && at <= t.end())
         };
         [i, i + 1].into_iter().find(holds)
     }
@@ -79,13 +77,13 @@ impl Outline {
     /// The name space that a word names.
     pub fn space_at(&self, word: usize) -> Option<&Binding> {
         let token = self.tokens.get(word).filter(|_| self.before(word) != ".")?;
-        self.find(self.word(word), token.range.start).filter(|b| b.kind == Kind::Space)
+        self.find(self.word(word), token.start()).filter(|b| b.kind == Kind::Space)
     }
 
     /// Whether a byte lies in a comment; no token holds it.
     pub fn in_comment(&self, at: usize) -> bool {
-        let before = self.tokens.partition_point(|t| t.range.end <= at);
-        let start = before.checked_sub(1).map_or(0, |i| self.tokens[i].range.end);
+        let before = self.tokens.partition_point(|t| t.end() <= at);
+        let start = before.checked_sub(1).map_or(0, |i| self.tokens[i].end());
         let mut rest = &self.text[start..at];
         while let Some(opens) = rest.find('/') {
             let (closes, length) = if rest[opens..].starts_with("//") { ("\n", 1) } else { ("*/", 2) };
@@ -100,10 +98,10 @@ impl Outline {
     /// Whether a byte stands in something that is written letter by letter: a string, a number, a colour, a comment.
     pub fn is_literal_at(&self, at: usize) -> bool {
         use TokenKind::{Color, Number, OpenComment, OpenText, Text};
-        let i = self.tokens.partition_point(|t| t.range.end < at);
+        let i = self.tokens.partition_point(|t| t.end() < at);
         let within = self.tokens.get(i).is_some_and(|t| match t.kind {
-            Number | Color | OpenText | OpenComment => t.range.start < at,
-            Text => t.range.start < at && at < t.range.end,
+            Number | Color | OpenText | OpenComment => t.start() < at,
+            Text => t.start() < at && at < t.end(),
             _ => false,
         });
         within || self.in_comment(at)

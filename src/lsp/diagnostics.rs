@@ -171,5 +171,6 @@ fn severity(diagnostic: &diag::Diagnostic) -> DiagnosticSeverity {
     match diagnostic.severity {
         diag::Severity::Error => DiagnosticSeverity::ERROR,
         diag::Severity::Warning => DiagnosticSeverity::WARNING,
+        diag::Severity::Remark => DiagnosticSeverity::INFORMATION,
     }
 }

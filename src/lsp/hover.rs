@@ -26,7 +26,7 @@ pub fn hover(view: &View, at: usize) -> Option<(String, Range<usize>)> {
     } else {
         plain(view, i)
     };
-    page.map(|page| (page, outline.tokens[i].range.clone()))
+    page.map(|page| (page, outline.tokens[i].range()))
 }
 
 /// The call that a word is the label of an argument of.
@@ -46,7 +46,7 @@ fn after_point(view: &View, i: usize) -> Option<String> {
 
 fn plain(view: &View, i: usize) -> Option<String> {
     let (outline, word) = (&view.outline, view.outline.word(i));
-    let at = outline.tokens[i].range.start;
+    let at = outline.tokens[i].start();
     let label = outline.bindings.iter().find(|b| b.kind == Kind::Label && b.token == i);
     if let Some(binding) = label.or_else(|| outline.find(word, at)) {
         return Some(bound(outline, binding));
@@ -124,7 +124,7 @@ fn parameter(outline: &Outline, binding: &Binding) -> String {
     let item = outline.items[binding.item].tokens.clone();
     let text = |tokens: Range<usize>| {
         let (first, last) = (&outline.tokens[tokens.start], &outline.tokens[tokens.end - 1]);
-        &outline.text[first.range.start..last.range.end]
+        &outline.text[first.start()..last.end()]
     };
     let mut end = item.end;
     let mut out = String::new();

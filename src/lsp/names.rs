@@ -195,7 +195,7 @@ impl Outline {
         let Some(string) = self.tokens[start..end].get(1).filter(|t| t.kind == TokenKind::Text) else {
             return;
         };
-        let at = string.range.clone();
+        let at = string.range();
         let path = unquoted(string.text(&self.text), Span::default()).unwrap_or_default();
         let named = start + 3 < end && self.word(start + 2) == "as" && self.is_word(start + 3);
         let space = named.then(|| self.word(start + 3).to_owned());
@@ -223,7 +223,7 @@ impl Outline {
     /// A name that is known from its place to the end of what is around it.
     fn local(&mut self, kind: Kind, token: usize, item: usize) {
         if token < self.items[item].tokens.end {
-            let scope = self.tokens[token].range.start..self.closing(token, item, false);
+            let scope = self.tokens[token].start()..self.closing(token, item, false);
             self.bind(kind, token, scope, item, false);
         }
     }
@@ -240,7 +240,7 @@ impl Outline {
         let within = (opens + 1..end).take_while(|i| depth < self.depth(*i));
         let first = |i: &usize| self.depth(*i) == depth + 1 && matches!(self.before(*i), "(" | ",");
         for i in within.filter(first).collect::<Vec<_>>() {
-            let scope = self.tokens[i].range.start..scope_end;
+            let scope = self.tokens[i].start()..scope_end;
             self.bind(Kind::Formal(begins), i, scope, item, false);
         }
     }
@@ -252,22 +252,22 @@ impl Outline {
         let depth = self.depth(token);
         let comma = |i: &usize| at_comma && self.depth(*i) == depth && self.word(*i) == ",";
         let ends = (token + 1..*end).find(|i| self.depth(*i) < depth || comma(i));
-        ends.map_or(reach.end, |i| self.tokens[i].range.start)
+        ends.map_or(reach.end, |i| self.tokens[i].start())
     }
 
     fn bind(&mut self, kind: Kind, token: usize, scope: Range<usize>, item: usize, of_file: bool) {
         if self.is_word(token) && !is_keyword(self.word(token)) {
-            let name = self.tokens[token].range.clone();
+            let name = self.tokens[token].range();
             self.bindings.push(Binding { kind, token, name, scope, item, of_file });
         }
     }
 }
 
 fn item(tokens: &[Token], reach: Range<usize>) -> Option<Item> {
-    let first = tokens.partition_point(|t| t.range.start < reach.start);
-    let past = tokens.partition_point(|t| t.range.start < reach.end);
+    let first = tokens.partition_point(|t| t.start() < reach.start);
+    let past = tokens.partition_point(|t| t.start() < reach.end);
     let (start, end) = (tokens.get(first)?, tokens.get(past.checked_sub(1)?)?);
-    Some(Item { range: start.range.start..end.range.end, tokens: first..past, reach })
+    Some(Item { range: start.start()..end.end(), tokens: first..past, reach })
 }
 
 #[cfg(test)]

@@ -29,7 +29,7 @@ use crate::cloud::ply::Cut;
 use crate::csg::{Expr, Object};
 use crate::diag::{Diagnostic, Fault};
 use crate::geom::Aabb;
-use crate::scene::{BuildError, Call, Catalog, Scene};
+use crate::scene::{BuildError, Call, Catalog, Draw, Scene};
 use crate::shot::settings::{self, Overrides};
 use crate::shot::{Camera, Light, Material, Settings, Shot, World, camera, light, material};
 use crate::solid::point_set::Solidity;
@@ -62,6 +62,8 @@ pub struct Options {
     pub cut: Cut,
     /// Where the names of files asked for are left.
     pub inputs: Inputs,
+    /// Whether what is to be seen through is built; only pictures show it.
+    pub ghosts: bool,
     /// Measure the solidity of every scan drawn, even where a picture does not depend on it.
     pub measure_all: bool,
     /// Whether what stands in several places is built anew in each, and not shared, as long as that is not too much: each
@@ -121,17 +123,23 @@ pub fn prepare(scene: &Scene, options: &Options) -> Result<Prepared, Vec<Diagnos
     let known = materials.as_deref().unwrap_or_default();
     let lines = settings.as_ref().map_or(0, Settings::lines);
     let mut builder = Builder::new(options, known, lines);
-    let world = world(scene, &mut builder, options, known.len());
-    let world = world.map_err(|more| errors.extend(more)).ok();
-    let (Some(settings), Some(materials), Some(lights), Some(chosen), Some((world, outline))) =
-        (settings, materials.clone(), lights, chosen, world)
+    let bare = known.len() as u32;
+    let mut built = |draws: &[Draw]| {
+        let built = world(draws, &mut builder, options, bare);
+        built.map_err(|more| errors.extend(more)).ok()
+    };
+    let world = built(&scene.draws);
+    let shown = if options.ghosts { &scene.ghosts[..] } else { &[] };
+    let ghosts = if shown.is_empty() { Some(None) } else { built(shown).map(|(ghosts, _)| Some(ghosts)) };
+    let (Some(settings), Some(materials), Some(lights), Some(chosen), Some((world, outline)), Some(ghosts)) =
+        (settings, materials.clone(), lights, chosen, world, ghosts)
     else {
         return Err(errors);
     };
     let scans = builder.reports();
     let Builder { warnings, loading, counts, .. } = builder;
     let camera = chosen.unwrap_or_else(|| Camera::fit(world.bounds()));
-    let shot = Shot { world, camera, lights, materials, settings };
+    let shot = Shot { world, ghosts, camera, lights, materials, settings };
     Ok(Prepared { shot, warnings, loading, counts, scans, outline })
 }
 
@@ -188,20 +196,20 @@ fn unknown_camera(scene: &Scene, name: &str) -> Diagnostic {
     }
 }
 
-/// All that is drawn, and where it was written.
+/// All of these, and where they were written. `bare` is the material of faces that have none.
 fn world(
-    scene: &Scene,
+    draws: &[Draw],
     builder: &mut Builder,
     options: &Options,
-    bare: usize,
+    bare: u32,
 ) -> Result<(World, Outline), Vec<Diagnostic>> {
     let mut lowering = Lowering::new(builder, options.measure_all);
-    lowering.groups = Groups::of(scene.draws.iter().map(|draw| &draw.shape), options.write_out);
+    lowering.groups = Groups::of(draws.iter().map(|draw| &draw.shape), options.write_out);
     let mut errors = Vec::new();
     let mut solids = Vec::new();
     let mut places = Vec::new();
     let mut bounds = Aabb::EMPTY;
-    for draw in &scene.draws {
+    for draw in draws {
         let first = lowering.leaves.len() as u32;
         match lowering.draw(&draw.shape, draw.at) {
             Ok(drawn) => {
@@ -223,7 +231,7 @@ fn world(
     // What turned out to stand once is not shared.
     drop(repeats);
     let mut whole = Expr::Or(solids);
-    let world = World::new(Object::new(leaves, &whole), sheets, bounds, bare as u32);
+    let world = World::new(Object::new(leaves, &whole), sheets, bounds, bare);
     if let Expr::Or(solids) = &mut whole {
         let part = |(expr, (at, leaves, bounds))| Part { at, expr, leaves, bounds };
         outline.parts = solids.drain(..).zip(places).map(part).collect();

@@ -1,5 +1,6 @@
 //! What a ray from the eye brings back, and the pixels of a tile made of it.
 
+use super::ghosts::Ghosts;
 use super::layers;
 use super::lighting::{Lights, open_sky};
 use super::sampler::{PixelSampler, Sample};
@@ -17,6 +18,8 @@ pub struct Painter<'a, S> {
     scenery: &'a S,
     view: View<'a>,
     lights: Lights,
+    /// What is seen through; only pictures of colours and light show it.
+    ghosts: Option<Ghosts<'a>>,
     /// Distances between which the picture of distances goes from white to black, world length.
     depths: Interval,
 }
@@ -28,7 +31,10 @@ impl<'a, S: Scenery> Painter<'a, S> {
             Integrator::Depth => depths(scenery, view),
             _ => Interval::EMPTY,
         };
-        Painter { scenery, view: *view, lights: Lights::new(view.lights), depths }
+        let shown =
+            matches!(view.settings.integrator, Integrator::Direct | Integrator::Ao | Integrator::Flat);
+        let ghosts = view.ghosts.filter(|_| shown).map(|world| Ghosts::new(world, view.materials));
+        Painter { scenery, view: *view, lights: Lights::new(view.lights), ghosts, depths }
     }
 
     /// Paints a tile.
@@ -75,7 +81,10 @@ impl<'a, S: Scenery> Painter<'a, S> {
             let ray = ray_at(dx, dy);
             // A single sample goes through the centre as well.
             let seen = centre.filter(|_| settings.samples == 1).unwrap_or_else(|| tracer.see(&ray));
-            let value = self.value(tracer, &ray, seen.as_ref(), sample);
+            let mut value = self.value(tracer, &ray, seen.as_ref(), sample);
+            if let Some(ghosts) = &self.ghosts {
+                value = ghosts.over(&mut tracer.scratch, &ray, seen.as_ref(), value);
+            }
             for (s, v) in sum.iter_mut().zip(value) {
                 *s += v;
             }

@@ -2,6 +2,7 @@
 //! not depend on threads or on the order of tiles. What rays meet is left to the world, files to
 //! [`crate::output`], clocks and messages to the program.
 
+mod ghosts;
 mod integrator;
 mod layers;
 mod lighting;
@@ -19,7 +20,7 @@ use rayon::prelude::*;
 pub use scenery::{Rays, Scenery};
 
 use crate::film::{Film, NoRoom};
-use crate::shot::{Camera, Light, Material, Settings, Shot};
+use crate::shot::{Camera, Light, Material, Settings, Shot, World};
 use crate::solid::Counts;
 use integrator::Painter;
 use tiles::Tile;
@@ -46,6 +47,8 @@ pub struct View<'a> {
     pub lights: &'a [Light],
     /// Materials by the index that a surface carries; beyond the end: the default.
     pub materials: &'a [Material],
+    /// What is seen through before all else.
+    pub ghosts: Option<&'a World>,
     /// Size, samples and so on.
     pub settings: &'a Settings,
 }
@@ -83,6 +86,7 @@ pub fn render(shot: &Shot, progress: &Progress) -> Result<Rendered, RenderError>
         camera: &shot.camera,
         lights: &shot.lights,
         materials: &shot.materials,
+        ghosts: shot.ghosts.as_ref(),
         settings: &shot.settings,
     };
     render_scenery(&shot.world, &view, progress)
@@ -186,7 +190,7 @@ mod tests {
         let camera = Camera::fit(Aabb::of_points([DVec3::ZERO, DVec3::ONE]));
         let aov = crate::film::Aov::ALL.to_vec();
         let settings = Settings { size: [70, 50], samples: 3, aov, ..Settings::default() };
-        let view = View { camera: &camera, lights: &[], materials: &[], settings: &settings };
+        let view = View { camera: &camera, lights: &[], materials: &[], ghosts: None, settings: &settings };
         let forward = tiles::cover(settings.window());
         let mut shuffled = forward.clone();
         shuffled.sort_by_key(|t| crate::num::hash::mix(u64::from(t.x) << 32 | u64::from(t.y)));

@@ -23,6 +23,9 @@ use crate::source::Span;
 pub struct Scene {
     /// What is drawn, in the order written.
     pub draws: Vec<Draw>,
+    /// What pictures show as something to see through, and nothing else knows of.
+    #[serde(default)]
+    pub ghosts: Vec<Draw>,
     /// Cameras with their names; the first is the default. Calls of [`Group::Camera`].
     pub cameras: Vec<Named>,
     /// Lights. Calls of [`Group::Light`].
@@ -42,7 +45,10 @@ impl Scene {
     /// How many shapes it is when written out, as serialising does: those that are used twice count twice.
     pub fn written_out(&self) -> u64 {
         let mut known = HashMap::new();
-        self.draws.iter().fold(0, |sum, draw| draw.shape.written_out(&mut known).saturating_add(sum))
+        self.draws
+            .iter()
+            .chain(&self.ghosts)
+            .fold(0, |sum, draw| draw.shape.written_out(&mut known).saturating_add(sum))
     }
 }
 
@@ -135,7 +141,7 @@ impl ShapeKind {
         let nothing = ShapeKind::Boolean { op: BooleanOp::Union, operands: Vec::new() };
         match std::mem::replace(self, nothing) {
             ShapeKind::Leaf { call, .. } => {
-                out.extend(call.args.into_values().filter_map(|a| match a.value {
+                out.extend(call.args.into_iter().filter_map(|(_, a)| match a.value {
                     Value::Shape(shape) => Some(shape),
                     _ => None,
                 }))

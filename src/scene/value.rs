@@ -1,9 +1,8 @@
 //! Values that a call holds once names, units and types are resolved.
 
-use std::collections::BTreeMap;
-
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
+use litemap::LiteMap;
+use serde::{Deserialize, Serialize, Serializer};
 
 use super::{Formula, Shape};
 use crate::source::Span;
@@ -68,9 +67,15 @@ pub struct Call {
     /// The declared name.
     pub word: String,
     /// Arguments by name.
-    pub args: BTreeMap<String, Arg>,
+    #[serde(serialize_with = "as_map")]
+    pub args: LiteMap<String, Arg>,
     /// The place of the whole call.
     pub at: Span,
+}
+
+/// Of no arguments too: left to itself that map writes an empty list.
+fn as_map<S: Serializer>(args: &LiteMap<String, Arg>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(args)
 }
 
 impl Call {

@@ -18,6 +18,8 @@ pub use world::{Hit, Surface, World};
 pub struct Shot {
     /// What rays meet.
     pub world: World,
+    /// What is seen through before it, if there is something.
+    pub ghosts: Option<World>,
     /// The chosen camera.
     pub camera: Camera,
     /// The lights.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use pss::diag::Severity;
 use pss::prepare::Options;
 
 use crate::args::CheckArgs;
@@ -15,7 +16,7 @@ pub fn run(args: &CheckArgs, console: &Console) -> u8 {
     for scene in &args.scenes {
         let mended = if args.fix { fix::mend(scene, &args.read, console) } else { Ok(()) };
         match mended.and_then(|()| check(args, scene, console)) {
-            Ok(warnings) => console.note(&summary(scene, warnings)),
+            Ok(told) => console.note(&summary(scene, told)),
             Err(failure) => {
                 let failed = console.fail(&failure);
                 code = if code == 0 { failed } else { code };
@@ -25,9 +26,9 @@ pub fn run(args: &CheckArgs, console: &Console) -> u8 {
     code
 }
 
-/// Shows a scene's warnings and says how many there are.
-fn check(args: &CheckArgs, scene: &Path, console: &Console) -> Result<usize, Failure> {
-    let options = Options { measure_all: true, write_out: true, ..Options::default() };
+/// Shows what is to be said of a scene; gives how many warnings and how many notes there are.
+fn check(args: &CheckArgs, scene: &Path, console: &Console) -> Result<[usize; 2], Failure> {
+    let options = Options { ghosts: true, measure_all: true, write_out: true, ..Options::default() };
     let Loaded { shot, outline, sources, warnings, unmet, .. } =
         load::load_with(scene, &args.read, options, [false, true], console)?;
     let findings = pss::check::findings(&shot, &outline);
@@ -35,13 +36,17 @@ fn check(args: &CheckArgs, scene: &Path, console: &Console) -> Result<usize, Fai
     if !unmet.is_empty() {
         return Err(Failure::new(unmet, sources));
     }
-    Ok(warnings + findings.len())
+    let notes = findings.iter().filter(|finding| finding.severity == Severity::Remark).count();
+    Ok([warnings + findings.len() - notes, notes])
 }
 
-fn summary(scene: &Path, warnings: usize) -> String {
-    let s = if warnings == 1 { "" } else { "s" };
-    match warnings {
-        0 => format!("{}: nothing to complain of", scene.display()),
-        n => format!("{}: {n} warning{s}", scene.display()),
-    }
+fn summary(scene: &Path, [warnings, notes]: [usize; 2]) -> String {
+    let many = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
+    let told = match (warnings, notes) {
+        (0, 0) => "nothing to complain of".to_owned(),
+        (0, n) => format!("nothing to complain of, {}", many(n, "note")),
+        (n, 0) => many(n, "warning"),
+        (n, notes) => format!("{}, {}", many(n, "warning"), many(notes, "note")),
+    };
+    format!("{}: {told}", scene.display())
 }

@@ -102,7 +102,7 @@ pub fn load_with(
         loading: prepared.loading,
         outline: prepared.outline,
         warnings: read.warnings.len() + prepared.warnings.len(),
-        draws: read.scene.draws.len(),
+        draws: read.scene.draws.len() + read.scene.ghosts.len(),
         unmet: read.unmet,
         sources,
     })

@@ -28,8 +28,14 @@ pub fn once(args: &RenderArgs, inputs: &Inputs, console: &Console) -> Result<(),
     let start = Instant::now();
     let outputs = outputs(args)?;
     let inputs = inputs.clone();
-    let options =
-        Options { samples: args.spp, seed: args.seed, crop: args.crop, inputs, ..args.scene.options() };
+    let options = Options {
+        samples: args.spp,
+        seed: args.seed,
+        crop: args.crop,
+        inputs,
+        ghosts: true,
+        ..args.scene.options()
+    };
     let mut loaded = load::load(&args.scene.scene, &args.scene.read, options, args.quiet, console)?;
     if loaded.draws == 0 && !args.quiet {
         console.show(&[nothing()], &loaded.sources);
