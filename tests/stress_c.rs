@@ -386,6 +386,9 @@ fn c22_rays_that_are_none_meet_nothing() {
         ray([inf, 0.0, 0.0], [1.0, 0.0, 0.0]),
         ray([0.0; 3], [0.0, inf, 0.0]),
         ray([0.0; 3], [0.0; 3]),
+        // So far away that its distance has no square.
+        ray([-1e200, 0.0, 0.0], [1.0, 0.0, 0.0]),
+        ray([-1e100, 0.0, 0.0], [1e100, 0.0, 0.0]),
     ];
     for s in subjects() {
         let shot = shot(&format!("draw {}", s.text));
@@ -396,7 +399,7 @@ fn c22_rays_that_are_none_meet_nothing() {
             assert!(spans(&shot, bad, &mut scratch).is_empty(), "{} {bad:?}", s.text);
         }
     }
-    assert_eq!(scratch.solid.counts.invalid_rays, 15 * subjects().len() as u64);
+    assert_eq!(scratch.solid.counts.invalid_rays, 21 * subjects().len() as u64);
     // They cost no more than being looked at: no leaf is asked.
     assert_eq!(scratch.solid.counts.leaf_queries, 0);
 }

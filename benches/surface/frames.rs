@@ -1,5 +1,6 @@
 //! Frames of 512 x 512 rays of one eye on the blob, the same again in one process: cold and warm, one thread.
 
+use glam::DVec3;
 use pss::geom::{Interval, Ray};
 use pss::solid::point_set::{Lead, Options, PointSet};
 use pss::solid::{Body, Crossing, Scratch, Solid};
@@ -16,7 +17,16 @@ pub const SIDE: usize = 512;
 struct Frame {
     hits: usize,
     crossings: usize,
-    squares: f64,
+    /// The first hits.
+    found: Vec<DVec3>,
+}
+
+impl Frame {
+    /// The root mean square of their distances from the true surface, world length.
+    fn rms(&self) -> f64 {
+        let squares: f64 = self.found.iter().map(|at| Truth::Blob.distance(*at).powi(2)).sum();
+        (squares / self.hits as f64).sqrt()
+    }
 }
 
 fn frame(
@@ -36,7 +46,7 @@ fn frame(
         frame.crossings += if whole { found.len() } else { found.len().min(1) };
         if let Some(first) = found.first() {
             frame.hits += 1;
-            frame.squares += Truth::Blob.distance(ray.at(first.t)).powi(2);
+            frame.found.push(ray.at(first.t));
         }
     }
     frame
@@ -87,7 +97,7 @@ pub fn rows(rows: &mut Vec<Row>) {
                     "million",
                     asked,
                 ));
-                let rms = (warm.squares / warm.hits as f64).sqrt() / diagonal;
+                let rms = warm.rms() / diagonal;
                 rows.push(Row::new(format!("{name}: rms distance over the diagonal"), rms, "", ""));
             }
         }

@@ -50,10 +50,11 @@ impl Ray {
         Ray::new(to_from.transform_point3(self.origin), to_from.transform_vector3(self.dir))
     }
 
-    /// Whether it can be traced: finite, with a direction whose length has a square.
+    /// Whether it can be traced: with a direction whose length has a square, from where its products with places have one.
     #[inline]
     pub fn is_valid(&self) -> bool {
         let squared = self.dir.length_squared();
-        self.origin.is_finite() && (f64::MIN_POSITIVE..f64::INFINITY).contains(&squared)
+        let products = self.origin.length_squared() * squared;
+        products.is_finite() && (f64::MIN_POSITIVE..f64::INFINITY).contains(&squared)
     }
 }

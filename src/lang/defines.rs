@@ -75,7 +75,8 @@ pub fn value(machine: &mut Machine, param: &Param, defines: &[Define]) -> Eval<V
     })
 }
 
-fn type_named(word: &Word) -> Eval<&'static str> {
+/// The type of a name.
+pub fn type_named(word: &Word) -> Eval<&'static str> {
     match TYPES.iter().find(|t| **t == word.text) {
         Some(known) => Ok(known),
         None => Err(unknown_type(&word.text).at(word.at, "unknown type").into()),

@@ -188,7 +188,8 @@ impl Machine<'_> {
         Some(known.clone().ok_or(Stop::Quiet))
     }
 
-    fn name(&self, name: &str, at: Span) -> Eval<Val> {
+    /// What a name is worth.
+    pub fn name(&self, name: &str, at: Span) -> Eval<Val> {
         if let Some(value) = self.defined(name, at) {
             return value;
         }
@@ -284,6 +285,11 @@ impl Machine<'_> {
         if let Some(builtin) = builtins::functions().find(|b| b.name == word) {
             return self.builtin(builtin, None, args, at);
         }
+        self.refuse_call(word, word_at)
+    }
+
+    /// The error that nothing of this name can be called.
+    pub fn refuse_call<T>(&self, word: &str, word_at: Span) -> Eval<T> {
         if let Some(method) = builtins::METHODS.iter().find(|b| b.name == word) {
             return Err(Diagnostic::error("E0401", format!("`{word}` is a method"))
                 .at(word_at, "not a function")

@@ -13,7 +13,7 @@ use super::modules::{self, Module};
 use super::scope::Locals;
 use super::unknown::words;
 use super::value::{Eval, Located, Record, Stop, Val};
-use super::{Read, Reading, check, order, parse, print, sets, span, split, units};
+use super::{Read, Reading, check, order, parse, print, resolve, sets, span, split, units};
 use crate::diag::{Diagnostic, nearest};
 use crate::scene::{Call, Draw, Group, Kind, Named, Scene};
 use crate::source::{FileId, SourceMap, Span};
@@ -29,16 +29,16 @@ pub type Outcome = Result<Read, Vec<Diagnostic>>;
 
 /// Reads a file and what it imports. Needs a deep stack: see [`super::read`].
 pub fn read(sources: &mut SourceMap, file: FileId, reading: &Reading, defines: &[Define]) -> Outcome {
-    let modules = modules::load(sources, file, reading)?;
-    let mut errors = Vec::new();
+    let (modules, mut errors) = modules::load(sources, file, reading)?;
     let unit = scene_unit(modules.iter().rev().map(|m| &*m.items), &mut errors);
     let root = modules.last().map_or(&[][..], |m| &m.items);
     errors.extend(order::redefinitions(root.iter().filter_map(|i| label(i, false))));
     errors.extend(order::redefinitions(root.iter().filter_map(|i| label(i, true))));
-    let params: Vec<&str> = root
+    let params = root
         .iter()
-        .filter_map(|i| if let ItemKind::Param(p) = &i.kind { Some(p.name.text.as_str()) } else { None })
-        .collect();
+        .filter_map(|i| if let ItemKind::Param(p) = &i.kind { Some(p.name.text.as_str()) } else { None });
+    let broken = modules.last().map_or(&[][..], |m| &m.broken);
+    let params: Vec<&str> = params.chain(broken.iter().map(String::as_str)).collect();
     errors.extend(defines::unknown(defines, &params));
     let machine = Machine {
         catalog: reading.catalog,
@@ -73,31 +73,62 @@ pub fn read(sources: &mut SourceMap, file: FileId, reading: &Reading, defines: &
     reader.finish()
 }
 
+/// What of a text could be read.
+pub struct Salvage {
+    /// The items without a mistake in their wording.
+    pub items: Vec<Item>,
+    /// The mistakes in the others.
+    pub errors: Vec<Diagnostic>,
+    /// What the others would have defined; `None` where nobody knows.
+    pub broken: Option<Vec<String>>,
+}
+
 /// The items, or every mistake in their wording.
 pub fn parsed(text: &str, file: FileId) -> Result<Vec<Item>, Vec<Diagnostic>> {
-    if text.len() > MAX_BYTES {
-        let told = format!("the scene is larger than {} MB", MAX_BYTES >> 20);
-        return Err(vec![
-            Diagnostic::error("E0705", told).help("keep points in files of their own: `points(\"a.ply\")`"),
-        ]);
-    }
-    if let Some(at) = text.find('\0') {
-        return Err(vec![
-            Diagnostic::error("E0103", "the text holds a NUL character")
-                .at(span(file, at..at + 1), "not text")
-                .help("is this a scene file?"),
-        ]);
+    let Salvage { items, errors, .. } = salvaged(text, file);
+    if errors.is_empty() { Ok(items) } else { Err(errors) }
+}
+
+/// The items that can be read, and every mistake in the wording of the others.
+pub fn salvaged(text: &str, file: FileId) -> Salvage {
+    if let Err(error) = readable(text, file) {
+        return Salvage { items: Vec::new(), errors: vec![error], broken: None };
     }
     let cut = split::cut(text, file);
     let mut errors = cut.errors;
     let mut items = Vec::with_capacity(cut.items.len());
-    for range in cut.items {
-        match parse::item(text, file, range) {
-            Ok(item) => items.push(item),
-            Err(error) => errors.push(*error),
+    let mut broken = cut.whole.then(Vec::new);
+    let mut sound = cut.items.into_iter().peekable();
+    for range in cut.all {
+        let item = sound.next_if_eq(&range).map(|range| parse::item(text, file, range));
+        match item {
+            Some(Ok(item)) => items.push(item),
+            failed => {
+                errors.extend(failed.and_then(Result::err).map(|error| *error));
+                broken = broken.and_then(|mut names| {
+                    names.extend(resolve::names_in(&text[range])?);
+                    Some(names)
+                });
+            }
         }
     }
-    if errors.is_empty() { Ok(items) } else { Err(in_order(errors)) }
+    Salvage { items, errors: in_order(errors), broken }
+}
+
+/// Refuses what no scene can be.
+fn readable(text: &str, file: FileId) -> Result<(), Diagnostic> {
+    if text.len() > MAX_BYTES {
+        let told = format!("the scene is larger than {} MB", MAX_BYTES >> 20);
+        return Err(
+            Diagnostic::error("E0705", told).help("keep points in files of their own: `points(\"a.ply\")`")
+        );
+    }
+    if let Some(at) = text.find('\0') {
+        return Err(Diagnostic::error("E0103", "the text holds a NUL character")
+            .at(span(file, at..at + 1), "not text")
+            .help("is this a scene file?"));
+    }
+    Ok(())
 }
 
 /// In the order of the text.
@@ -191,6 +222,11 @@ impl Reader<'_> {
                 let done = self.item(item);
                 self.told(done, item.at);
             }
+            // Who has no steps left cannot look further.
+            if !self.errors.iter().any(|e| matches!(e.code, "E0709" | "E0710")) {
+                let more = resolve::unresolved(&mut self.machine, &module.items, &self.errors);
+                self.errors.extend(more);
+            }
         }
     }
 
@@ -207,15 +243,15 @@ impl Reader<'_> {
         let own = items.iter().filter_map(order::defined);
         self.errors.extend(order::redefinitions(known.chain(own.clone())));
         let k = self.machine.module;
-        for name in own {
-            self.machine.names[k].insert(name.text.clone(), None);
-        }
+        let unknown = own.map(|name| &name.text).chain(&module.broken);
+        self.machine.names[k].extend(unknown.map(|name| (name.clone(), None)));
         for (import, from) in module.imported() {
             // What a file imports is its own business.
             let names = own_names(&modules[from].items).map(|name| name.text.clone());
             let names =
                 names.map(|name| (name.clone(), self.machine.names[from].get(&name).cloned().flatten()));
-            let names: Vec<(String, Option<Val>)> = names.collect();
+            let broken = modules[from].broken.iter().map(|name| (name.clone(), None));
+            let names: Vec<(String, Option<Val>)> = names.chain(broken).collect();
             match &import.space {
                 Some(space) => {
                     let record = space_of(names);

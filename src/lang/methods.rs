@@ -132,7 +132,7 @@ pub const TABLE: &[Builtin] = &[
     Builtin {
         name: "clip",
         formals: CLIP,
-        doc: "The surface that lies inside a solid, without a cap: a Sheet.",
+        doc: "The surface that lies inside a solid, without a cap: a Sheet. What lies on the boundary of the solid is kept.",
         call: clip,
     },
 ];

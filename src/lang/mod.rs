@@ -34,6 +34,7 @@ mod placing;
 mod print;
 mod queries;
 pub mod reference;
+mod resolve;
 mod scan;
 mod scope;
 mod sets;

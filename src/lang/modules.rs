@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::Reading;
 use super::ast::{Import, Item, ItemKind};
-use super::items::{in_order, parsed};
+use super::items::{Salvage, in_order, salvaged};
 use crate::diag::Diagnostic;
 use crate::source::{FileId, SourceMap, Span};
 
@@ -18,6 +18,8 @@ const DEEPEST: usize = 64;
 pub struct Module {
     /// What stands in it.
     pub items: Vec<Item>,
+    /// What its broken items would have defined.
+    pub broken: Vec<String>,
     /// The modules that its `import` items name, in their order.
     pub imports: Vec<usize>,
 }
@@ -35,17 +37,29 @@ fn imports(items: &[Item]) -> impl Iterator<Item = &Import> {
         .filter_map(|item| if let ItemKind::Import(import) = &item.kind { Some(import) } else { None })
 }
 
-/// Reads a file and what it imports; the file itself is the last.
+/// Reads a file and what it imports; the file itself is the last. Beside them stand the mistakes in the wording of items that
+/// were left out; where it is not known what these would have defined, there is nothing but mistakes.
 pub fn load(
     sources: &mut SourceMap,
     file: FileId,
     reading: &Reading,
-) -> Result<Vec<Module>, Vec<Diagnostic>> {
-    let mut loading =
-        Loading { sources, reading, done: Vec::new(), known: HashMap::new(), errors: Vec::new() };
+) -> Result<(Vec<Module>, Vec<Diagnostic>), Vec<Diagnostic>> {
+    let mut loading = Loading {
+        sources,
+        reading,
+        done: Vec::new(),
+        known: HashMap::new(),
+        errors: Vec::new(),
+        told: Vec::new(),
+    };
     let path = loading.sources.file(file).path.clone();
     loading.file(file, path.as_deref());
-    if loading.errors.is_empty() { Ok(loading.done) } else { Err(in_order(loading.errors)) }
+    let Loading { done, mut errors, told, .. } = loading;
+    if errors.is_empty() {
+        return Ok((done, told));
+    }
+    errors.extend(told);
+    Err(in_order(errors))
 }
 
 struct Loading<'s, 'r> {
@@ -54,7 +68,10 @@ struct Loading<'s, 'r> {
     done: Vec<Module>,
     /// By path: the module, or `None` while it is being read.
     known: HashMap<PathBuf, Option<usize>>,
+    /// What ends the reading.
     errors: Vec<Diagnostic>,
+    /// What does not.
+    told: Vec<Diagnostic>,
 }
 
 /// A file whose imports are followed one by one.
@@ -62,6 +79,7 @@ struct Open {
     file: FileId,
     path: Option<PathBuf>,
     items: Vec<Item>,
+    broken: Vec<String>,
     imports: Vec<usize>,
     next: usize,
 }
@@ -74,8 +92,8 @@ impl Loading<'_, '_> {
         while let Some(top) = stack.last_mut() {
             let import = imports(&top.items).nth(top.next).map(|i| (i.path.clone(), i.at));
             let Some((written, at)) = import else {
-                let Some(Open { path, items, imports, .. }) = stack.pop() else { break };
-                self.done.push(Module { items, imports });
+                let Some(Open { path, items, broken, imports, .. }) = stack.pop() else { break };
+                self.done.push(Module { items, broken, imports });
                 let made = self.done.len() - 1;
                 if let Some(path) = path {
                     self.known.insert(path, Some(made));
@@ -147,18 +165,16 @@ impl Loading<'_, '_> {
     }
 
     fn open(&mut self, file: FileId, path: Option<PathBuf>) -> Option<Open> {
-        match parsed(&self.sources.file(file).text, file) {
-            Ok(items) => {
-                if let Some(path) = &path {
-                    self.known.insert(path.clone(), None);
-                }
-                Some(Open { file, path, items, imports: Vec::new(), next: 0 })
-            }
-            Err(errors) => {
-                self.errors.extend(errors);
-                None
-            }
+        let Salvage { items, errors, broken } = salvaged(&self.sources.file(file).text, file);
+        let Some(broken) = broken else {
+            self.errors.extend(errors);
+            return None;
+        };
+        self.told.extend(errors);
+        if let Some(path) = &path {
+            self.known.insert(path.clone(), None);
         }
+        Some(Open { file, path, items, broken, imports: Vec::new(), next: 0 })
     }
 }
 

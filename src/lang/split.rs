@@ -24,6 +24,8 @@ pub struct Cut {
     pub items: Vec<Range<usize>>,
     /// Bytes of all items.
     pub all: Vec<Range<usize>>,
+    /// Whether it could be cut at all.
+    pub whole: bool,
     /// What is wrong with the others.
     pub errors: Vec<Diagnostic>,
 }
@@ -38,7 +40,7 @@ pub fn cut(text: &str, file: FileId) -> Cut {
         open: Vec::new(),
         item: None,
         in_attributes: false,
-        out: Cut { items: Vec::new(), all: Vec::new(), errors: Vec::new() },
+        out: Cut { items: Vec::new(), all: Vec::new(), whole: true, errors: Vec::new() },
     };
     for i in 0..tokens.len() {
         cutter.take(i);
@@ -50,7 +52,7 @@ pub fn cut(text: &str, file: FileId) -> Cut {
         let error = Diagnostic::error("E0701", told)
             .at(span(file, at), "this is too deep")
             .help("name the inner parts with `let`, or list the operands, as in `union([a, b])`");
-        out = Cut { items: Vec::new(), all: Vec::new(), errors: vec![error] };
+        out = Cut { items: Vec::new(), all: Vec::new(), whole: false, errors: vec![error] };
     }
     out
 }
@@ -195,7 +197,10 @@ impl Cutter<'_> {
 
     fn strange(&mut self, i: usize) {
         let error = stranger(self.text, &self.tokens[i], self.place(i));
-        self.spoil(error);
+        match self.item {
+            Some(_) => self.spoil(error),
+            None => self.out.errors.push(error),
+        }
     }
 
     fn no_item(&mut self, i: usize) {

@@ -388,5 +388,9 @@ pub fn ray(text: &str) -> Result<Ray, String> {
     let list: Vec<f64> = parts.map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;
     let [ox, oy, oz, dx, dy, dz] = list[..] else { return Err(wrong()) };
     let ray = Ray::new(DVec3::new(ox, oy, oz), DVec3::new(dx, dy, dz));
-    if ray.is_valid() { Ok(ray) } else { Err("a ray has finite numbers and a direction".to_owned()) }
+    if ray.is_valid() {
+        Ok(ray)
+    } else {
+        Err("a ray has a direction, and numbers with which one can count: up to 1e150".to_owned())
+    }
 }
