@@ -25,7 +25,7 @@ pub fn rows(rows: &mut Vec<Row>) {
     let long = std::env::var_os("PSS_LONG").is_some();
     let sizes: &[(usize, f64, &str, &str)] = &[
         (100_000, 0.85, "<= 0.7", ""),
-        (1_000_000, 1.0, "<= 6", "<= 600"),
+        (1_000_000, 1.1, "<= 6", "<= 600"),
         (10_000_000, 1.0, "", "<= 2500"),
     ];
     for &(count, smoothing, seconds, megabytes) in &sizes[..if long { 3 } else { 2 }] {
