@@ -190,14 +190,25 @@ pub fn mended(text: &str, file: FileId, diagnostics: &[Diagnostic]) -> (String, 
     (out, count)
 }
 
+/// A word of a text as messages show it: characters that are not to be seen by their numbers.
+pub fn shown(word: &str) -> String {
+    let each = word.chars().map(|c| match c {
+        '"' | '\'' | '\\' => c.to_string(),
+        c => c.escape_debug().to_string(),
+    });
+    each.collect()
+}
+
 /// The known name nearest to `name`, for "did you mean": at most a third of its letters wrong, missing,
 /// too many or in each other's place (optimal string alignment), the first of several.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = (name.chars().count() / 3).max(1);
+    // A name all of whose letters differ is not near.
+    let letters = |k: &str| name.chars().count().max(k.chars().count());
     known
         .into_iter()
         .map(|k| (strsim::osa_distance(name, k), k))
-        .filter(|(d, _)| *d <= limit)
+        .filter(|(d, k)| *d <= limit && *d < letters(k))
         .min_by_key(|(d, _)| *d)
         .map(|(_, k)| k)
 }

@@ -9,6 +9,9 @@ use serde::Serialize;
 use crate::diag::{Diagnostic, Fix, Label, Severity};
 use crate::source::{FileId, SourceMap};
 
+/// A sentence or a name longer than so many bytes is cut.
+const LONGEST: usize = 1000;
+
 /// Errors shown before the rest is only counted.
 const MAX_ERRORS: usize = 20;
 
@@ -106,6 +109,11 @@ pub fn printable(text: &str) -> String {
 
 /// A word for the terminal: control characters, and those that turn the direction of writing, as escapes.
 fn clean(text: &str) -> Cow<'_, str> {
+    if LONGEST < text.len() {
+        // A name of a million letters is told by where it begins.
+        let cut = text.floor_char_boundary(LONGEST);
+        return Cow::Owned(format!("{}...", clean(&text[..cut])));
+    }
     if !text.chars().any(is_hidden) {
         return Cow::Borrowed(text);
     }

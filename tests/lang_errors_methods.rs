@@ -11,7 +11,7 @@ error[E0507]: `axis` cannot be "w"
   |
 1 | draw sphere(r: 1).mirror("w")
   |                          ^^^ unknown word
-  = help: did you mean "x"?
+  = help: write one of "x", "y", "z"
 
 error[E0510]: the axis has no direction
  --> scene.pss:2:26

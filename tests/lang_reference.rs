@@ -1,5 +1,8 @@
 //! The reference page is what the tables say; every word has a page, and every example is a scene.
 
+mod cli_common;
+
+use cli_common::Folder;
 use pss::lang::{codes, reference};
 
 #[test]
@@ -56,6 +59,9 @@ fn every_code_has_a_page_whose_scenes_show_it() {
     let mut wrong = Vec::new();
     for code in codes::CODES.iter().filter(|code| !code.bad.is_empty()) {
         let (bad, good) = (said(code.bad), said(code.good));
+        // What cannot be told by reading and preparing alone is told by a command.
+        let told = bad.contains(&code.code.to_owned()) && good.is_empty();
+        let (bad, good) = if told { (bad, good) } else { (commanded(code.bad), commanded(code.good)) };
         if !bad.contains(&code.code.to_owned()) || !good.is_empty() {
             wrong.push(format!("{}: {bad:?} {good:?}", code.code));
         }
@@ -79,6 +85,45 @@ fn said(text: &str) -> Vec<String> {
         }
         Err(errors) => told(errors),
     }
+}
+
+/// The codes told by the command of an example, in a folder that holds its files.
+fn commanded(example: &str) -> Vec<String> {
+    let folder = Folder::new();
+    let first = example.lines().next().unwrap().strip_prefix("$ pss ");
+    let command = first.unwrap_or("check scene.pss");
+    let text = if first.is_some() { example.split_once('\n').unwrap_or_default().1 } else { example };
+    let mut name = "scene.pss".to_owned();
+    let mut files = std::collections::BTreeMap::new();
+    for line in text.lines() {
+        if let Some(next) = line.strip_prefix("--- ") {
+            next.clone_into(&mut name);
+        }
+        let file: &mut String = files.entry(name.clone()).or_default();
+        if !line.starts_with("--- ") {
+            *file += line;
+            *file += "\n";
+        }
+    }
+    for (name, text) in &files {
+        folder.write(name, text);
+    }
+    let told = folder.run(&command.split(' ').collect::<Vec<_>>()).stderr;
+    let codes = told.lines().filter_map(|line| {
+        let (severity, rest) = line.split_once('[')?;
+        let is_told = ["error", "warning", "note"].contains(&severity);
+        is_told.then(|| rest.split(']').next().unwrap().to_owned())
+    });
+    codes.collect()
+}
+
+/// Those that no scene shows: they take a full disk, gigabytes, or a fault.
+#[test]
+fn few_codes_are_without_a_scene_that_shows_them() {
+    let without: Vec<&str> = codes::CODES.iter().filter(|c| c.bad.is_empty()).map(|c| c.code).collect();
+    let wanted =
+        ["E0001", "E0602", "E0606", "E0701", "E0702", "E0704", "E0705", "E0707", "E0708", "E0710", "E0900"];
+    assert_eq!(without, wanted);
 }
 
 /// The words that editors colour are those of the grammar.

@@ -196,6 +196,8 @@ fn s20_strings_and_comments_without_an_end_are_told_where_they_begin() {
     refused("draw sphere(r: 1)\nlet s = \"abc\ndraw sphere(r: 1)\n", &["E0104", "scene.pss:2:9"]);
     refused("let a = 1\n/* never\ndraw sphere(r: 1)\n", &["E0108", "scene.pss:2:1"]);
     refused("let a = 1 /* never\n", &["E0108", "scene.pss:1:11"]);
+    refused("/* header\ndraw sphere(r: 1)\nexpect 1 is 2\n", &["E0108", "scene.pss:1:1"]);
+    refused("// x\n/* header\n", &["E0108", "scene.pss:2:1"]);
 }
 
 #[test]

@@ -56,13 +56,19 @@ pub fn holes(samples: &Samples) -> Vec<Hole> {
 
 /// The same, given what is known of the samples' neighbours.
 pub fn holes_by(samples: &Samples, Known { tree, table }: &Known) -> Vec<Hole> {
-    let made = table.is_none().then(|| tree.table(AROUND));
-    let table = table.as_ref().or(made.as_ref()).filter(|table| AROUND <= table.k());
-    let may = |i: usize| {
-        table.is_none_or(|table| {
-            let near = &table.row(i)[..AROUND];
-            may_be_open(samples, i, near, disc_radius(samples, i, near))
-        })
+    let may = |i: usize, near: &[u32]| may_be_open(samples, i, near, disc_radius(samples, i, near));
+    let some: Option<Vec<bool>> = match table {
+        Some(table) if table.k() < AROUND => None,
+        Some(table) => {
+            let may = |i| may(i, &table.row(i)[..AROUND]);
+            Some((0..samples.len()).into_par_iter().map(may).collect())
+        }
+        // A table of very many samples would be the most memory that is ever held.
+        None if samples.len() <= AROUND => None,
+        None => Some(tree.map(AROUND, |i, near| {
+            let ids: [u32; AROUND] = std::array::from_fn(|k| near[k].index);
+            may(i as usize, &ids)
+        })),
     };
     let touch = |(near, arcs): &mut (Vec<Near>, Vec<[f64; 2]>), i: u32| {
         let i = i as usize;
@@ -74,7 +80,10 @@ pub fn holes_by(samples: &Samples, Known { tree, table }: &Known) -> Vec<Hole> {
         is_open(samples, i, near, radius, arcs).then_some((i as u32, radius))
     };
     let all = 0..samples.len() as u32;
-    let asked: Vec<u32> = all.into_par_iter().filter(|i| may(*i as usize)).collect();
+    let asked: Vec<u32> = match some {
+        Some(may) => all.filter(|i| may[*i as usize]).collect(),
+        None => all.collect(),
+    };
     let open: Vec<Option<(u32, f64)>> = asked.into_par_iter().map_init(Default::default, touch).collect();
     let rim: Vec<(u32, f64)> = open.into_iter().flatten().collect();
     let labels = linked(samples, &rim).labels();

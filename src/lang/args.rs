@@ -87,7 +87,9 @@ impl<'a> Callee<'a> {
                     let known = nearest(&name.text, self.formals.iter().map(|f| f.name));
                     let told = format!("`{}` has no argument `{}`", self.word, name.text);
                     let error = Diagnostic::error("E0403", told).at(name.at, "unknown argument");
-                    if let Some(help) = habits::instead(&name.text, habits::Place::Argument) {
+                    let habit = habits::instead(&name.text, habits::Place::Argument);
+                    // Another spelling of an argument that is there says more than a habit.
+                    if let Some(help) = habit.filter(|help| known.is_none() || *help != habits::WEAR) {
                         let same = habits::same(&name.text, habits::Place::Argument);
                         let same = same.filter(|same| self.formals.iter().any(|f| f.name == *same));
                         return error
@@ -138,6 +140,9 @@ impl<'a> Callee<'a> {
             None if self.word == "rotate" => "turn around one axis after the other: \
                 `.rotate_x(90deg).rotate_z(45deg)`, or around any: `.rotate(axis: [1, 1, 0], by: 45deg)`"
                 .to_owned(),
+            None if self.formals.first().is_some_and(|f| f.name == "by") => {
+                format!("it is `{}`; a vector stands in square brackets: `[x, y, z]`", self.signature())
+            }
             None => format!("it is `{}`", self.signature()),
         })
     }

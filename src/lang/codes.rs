@@ -9,7 +9,8 @@ pub struct Code {
     pub told: &'static str,
     /// How it comes about, and what helps.
     pub why: &'static str,
-    /// A scene that is told so; empty where it takes more than a scene: a file, a command line, a fault.
+    /// A scene that is told so; empty where it takes more than scenes: a full disk, a fault. A first line `$ pss ...` is the
+    /// command that tells (else `pss check scene.pss`), and a line `--- NAME` begins another file.
     pub bad: &'static str,
     /// The same scene, repaired.
     pub good: &'static str,
@@ -154,7 +155,7 @@ pub const CODES: &[Code] = &[
         "E0306",
         "Samples of a solid cannot be taken.",
         "Sample a bounded solid that has an inside, such as `points(sphere(r: 1), samples: 1000)`.",
-        NONE,
+        ["draw points(half_space(z < 0), samples: 1000)", "draw points(sphere(r: 1), samples: 1000)"],
     ),
     code(
         "E0307",
@@ -178,7 +179,10 @@ pub const CODES: &[Code] = &[
         "E0310",
         "A material takes its colour from a scan that has none.",
         "Take a scan with colours, or a material of one colour: `matte(#b8683c)`.",
-        NONE,
+        [
+            "material own(kind: \"points\")\ndraw points(\"scan.ply\").with(own)\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n2 0 0\n2 1 0\n2 2 0",
+            "material own(color: #b8683c)\ndraw points(\"scan.ply\").with(own)\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n2 0 0\n2 1 0\n2 2 0",
+        ],
     ),
     code(
         "E0401",
@@ -232,7 +236,10 @@ pub const CODES: &[Code] = &[
         "E0409",
         "`-D` names no parameter of the scene.",
         "Parameters are the `param` items of the scene itself.",
-        NONE,
+        [
+            "$ pss check scene.pss -D bor=3mm\nparam bore: length = 4 in 1..8\ndraw sphere(r: bore)",
+            "$ pss check scene.pss -D bore=3mm\nparam bore: length = 4 in 1..8\ndraw sphere(r: bore)",
+        ],
     ),
     code(
         "E0410",
@@ -292,7 +299,10 @@ pub const CODES: &[Code] = &[
         "E0509",
         "The value of a `-D` cannot be read.",
         "Strings are given as they stand, anything else as in a scene: `-D bore=3mm`.",
-        NONE,
+        [
+            "$ pss check scene.pss -D bore=wide\nparam bore: length = 4 in 1..8\ndraw sphere(r: bore)",
+            "$ pss check scene.pss -D bore=3mm\nparam bore: length = 4 in 1..8\ndraw sphere(r: bore)",
+        ],
     ),
     code(
         "E0510",
@@ -322,27 +332,41 @@ pub const CODES: &[Code] = &[
         "E0513",
         "The files of a scene have different units.",
         "All files that say `units` agree; lengths with units of their own mean the same in each.",
-        NONE,
+        [
+            "units(mm)\nimport \"peg.pss\"\ndraw peg\n--- peg.pss\nunits(in)\nlet peg = cylinder(r: 1, h: 3)",
+            "units(mm)\nimport \"peg.pss\"\ndraw peg\n--- peg.pss\nlet peg = cylinder(r: 1in, h: 3in)",
+        ],
     ),
     code(
         "E0601",
         "A file cannot be read.",
         "Is the name right? It is relative to the file that names it.",
-        NONE,
+        ["draw points(\"nowhere.ply\")", "draw points(sphere(r: 1), samples: 1000)"],
     ),
     code("E0602", "A file name holds a zero byte.", "Write the name of a file.", NONE),
     code(
         "E0603",
         "A file lies outside of what a scene may read.",
         "A scene reads below its own folder, what `-D` names, and below the folders of `--allow-read DIR`.",
-        NONE,
+        ["draw points(\"../scan.ply\")", "draw points(sphere(r: 1), samples: 1000)"],
     ),
-    code("E0604", "A file holds what cannot be used.", "The message says where it is wrong.", NONE),
+    code(
+        "E0604",
+        "A file holds what cannot be used.",
+        "The message says where it is wrong.",
+        [
+            "$ pss probe scene.pss --rays rays.txt\ndraw sphere(r: 1)\n--- rays.txt\n0,0,5 0,0",
+            "$ pss probe scene.pss --rays rays.txt\ndraw sphere(r: 1)\n--- rays.txt\n0,0,5 0,0,-1",
+        ],
+    ),
     code(
         "E0605",
         "A file does not hold what is asked of it, or not as it is asked.",
         "The message says what it lacks.",
-        NONE,
+        [
+            "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nend_header\n1 2\n3 4",
+            "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n2 0 0\n2 1 0\n2 2 0",
+        ],
     ),
     code(
         "E0606",
@@ -350,13 +374,29 @@ pub const CODES: &[Code] = &[
         "The message says what it is.",
         NONE,
     ),
-    code("E0607", "An output is one of the inputs.", "Write the picture under another name.", NONE),
-    code("E0608", "A file cannot be written.", "Does its folder exist, and may it be written to?", NONE),
+    code(
+        "E0607",
+        "An output is one of the inputs.",
+        "Write the picture under another name.",
+        [
+            "$ pss cloud convert scan.ply scan.ply\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n2 0 0\n2 1 0\n2 2 0",
+            "$ pss cloud convert scan.ply clean.ply\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n2 0 0\n2 1 0\n2 2 0",
+        ],
+    ),
+    code(
+        "E0608",
+        "A file cannot be written.",
+        "Does its folder exist, and may it be written to?",
+        [
+            "$ pss render scene.pss -o nowhere/a.png\ndraw sphere(r: 1)",
+            "$ pss render scene.pss -o a.png --size 8x6\ndraw sphere(r: 1)",
+        ],
+    ),
     code(
         "E0609",
         "A file is imported by itself.",
         "Put what both need into a file of its own, and import that.",
-        NONE,
+        ["import \"scene.pss\"\ndraw sphere(r: 1)", "draw sphere(r: 1)"],
     ),
     code("E0701", "Something nests too deep, or is too large to be read.", "Name parts with `let`.", NONE),
     code("E0702", "Something is understood but not carried out yet.", "Write the scene without it.", NONE),
@@ -405,9 +445,17 @@ pub const CODES: &[Code] = &[
         "E0801",
         "An expectation is not met.",
         "The message gives both sides, and the bar of what was measured.",
-        NONE,
+        [
+            "expect volume(box(size: 2)) ~= 6 within 1%\ndraw box(size: 2)",
+            "expect volume(box(size: 2)) ~= 8 within 1%\ndraw box(size: 2)",
+        ],
     ),
-    code("E0802", "`within` stands without a comparison.", "Write `expect a ~= b within 1%`.", NONE),
+    code(
+        "E0802",
+        "`within` stands without a comparison.",
+        "Write `expect a ~= b within 1%`.",
+        ["expect 1 < 2 within 1%\ndraw sphere(r: 1)", "expect 1.001 ~= 1 within 1%\ndraw sphere(r: 1)"],
+    ),
     code(
         "E0900",
         "The program is wrong.",
@@ -424,64 +472,109 @@ pub const CODES: &[Code] = &[
         "W0102",
         "A file was read, but not all of it is as it should be.",
         "The message says what was dropped or mended.",
-        NONE,
+        [
+            "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 10\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n2 0 0\n2 1 0\n2 2 0\nnan 0 0",
+            "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n2 0 0\n2 1 0\n2 2 0",
+        ],
     ),
     code(
         "W0103",
         "The points of a scan are too coarse for their spacing, so far from the origin.",
         "Export the cloud in double precision, or nearer to the origin.",
-        NONE,
+        [
+            "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nend_header\n10000000 10000000 0\n10000000 10000002 0\n10000000 10000004 0\n10000002 10000000 0\n10000002 10000002 0\n10000002 10000004 0\n10000004 10000000 0\n10000004 10000002 0\n10000004 10000004 0",
+            "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty double x\nproperty double y\nproperty double z\nend_header\n10000000.3 10000000.3 0\n10000000.3 10000002.3 0\n10000000.3 10000004.3 0\n10000002.3 10000000.3 0\n10000002.3 10000002.3 0\n10000002.3 10000004.3 0\n10000004.3 10000000.3 0\n10000004.3 10000002.3 0\n10000004.3 10000004.3 0",
+        ],
     ),
-    code("W0104", "A scan is noisier than its surface smooths.", "Raise `smoothing:`.", NONE),
+    code(
+        "W0104",
+        "A scan is noisier than its surface smooths.",
+        "Raise `smoothing:`.",
+        [
+            "draw points(sphere(r: 1), samples: 2000, noise: 0.1)",
+            "draw points(sphere(r: 1), samples: 2000, noise: 0.1, smoothing: 3)",
+        ],
+    ),
     code(
         "W0105",
         "Walls of a scan are thinner than its surface resolves.",
         "Lower `smoothing:`, or scan more densely.",
-        NONE,
+        ["draw points(sphere(r: [1, 1, 0.08]), samples: 2000)", "draw points(sphere(r: 1), samples: 2000)"],
     ),
-    code("W0106", "Normals of a scan contradict each other.", "Try `normals: \"estimate\"`.", NONE),
+    code(
+        "W0106",
+        "Normals of a scan contradict each other.",
+        "Try `normals: \"estimate\"`.",
+        [
+            "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n0 0 0 0 0 -1\n0 1 0 0 0 1\n0 2 0 0 0 -1\n1 0 0 0 0 1\n1 1 0 0 0 -1\n1 2 0 0 0 1\n2 0 0 0 0 -1\n2 1 0 0 0 1\n2 2 0 0 0 -1",
+            "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n0 0 0 0 0 1\n0 1 0 0 0 1\n0 2 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n1 2 0 0 0 1\n2 0 0 0 0 1\n2 1 0 0 0 1\n2 2 0 0 0 1",
+        ],
+    ),
     code(
         "W0107",
         "The width of a scan's surface holds very many samples: rays take long.",
         "Lower `smoothing:` or `h:`, or leave out what is sparse beside dense samples.",
-        NONE,
+        ["draw points(sphere(r: 1), samples: 4000, h: 0.8)", "draw points(sphere(r: 1), samples: 4000)"],
     ),
     code(
         "W0121",
         "Faces of two shapes coincide.",
         "Nothing is wrong with that; if a cut shall go through, let the cutter stand out of what it cuts.",
-        NONE,
+        [
+            "draw box([0, 0, 0], [4, 4, 2]) - cylinder(r: 1, from: [2, 2, 0], to: [2, 2, 2])",
+            "draw box([0, 0, 0], [4, 4, 2]) - cylinder(r: 1, from: [2, 2, -1], to: [2, 2, 3])",
+        ],
     ),
     code(
         "W0122",
         "A cutter cuts nothing.",
         "Move it to where it meets what it shall cut, or leave it out.",
-        NONE,
+        [
+            "draw sphere(r: 1) - sphere(r: 1, at: [5, 0, 0])",
+            "draw sphere(r: 1) - sphere(r: 1, at: [1, 0, 0])",
+        ],
     ),
-    code("W0123", "What is drawn is nothing.", "Do its parts meet? Does a cutter take all?", NONE),
+    code(
+        "W0123",
+        "What is drawn is nothing.",
+        "Do its parts meet? Does a cutter take all?",
+        [
+            "draw sphere(r: 1) & sphere(r: 1, at: [5, 0, 0])",
+            "draw sphere(r: 1) & sphere(r: 1, at: [1, 0, 0])",
+        ],
+    ),
     code(
         "W0124",
         "The base of a difference lies wholly inside its cutters.",
         "Make the cutter smaller; what both hold is written `a & b`.",
-        NONE,
+        ["draw box(size: 1) - sphere(r: 2)", "draw box(size: 1) - sphere(r: 0.6)"],
     ),
     code(
         "W0125",
         "What is left, or open, between shapes is too thin to be meant.",
         "Let the one stand out of the other, or reach into it.",
-        NONE,
+        [
+            "draw box([0, 0, 0], [4, 4, 2]) - box([1, 1, 0.000000001], [3, 3, 3])",
+            "draw box([0, 0, 0], [4, 4, 2]) - box([1, 1, -1], [3, 3, 3])",
+        ],
     ),
     code(
         "W0126",
         "The insides of two solids drawn overlap.",
         "Move one of them, or draw them as one: `draw a | b`.",
-        NONE,
+        [
+            "draw sphere(r: 1)\ndraw sphere(r: 1, at: [1, 0, 0])",
+            "draw sphere(r: 1) | sphere(r: 1, at: [1, 0, 0])",
+        ],
     ),
     code(
         "W0127",
         "A shape is nothing: no line meets it.",
         "Look at its sizes; a formula may hold nowhere in its bounds.",
-        NONE,
+        [
+            "draw sphere(r: 1) | implicit(x**2 < -1, inside: box(size: 4))",
+            "draw sphere(r: 1) | implicit(x**2 < 1, inside: box(size: 4))",
+        ],
     ),
     code(
         "W0201",
@@ -499,6 +592,9 @@ pub const CODES: &[Code] = &[
         "W0203",
         "The scene draws nothing: its picture is the background.",
         "Draw something: `draw sphere(r: 1)`.",
-        NONE,
+        [
+            "$ pss render scene.pss --size 8x6\nlet ball = sphere(r: 1)",
+            "$ pss render scene.pss --size 8x6\nlet ball = sphere(r: 1)\ndraw ball",
+        ],
     ),
 ];

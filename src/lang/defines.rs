@@ -56,6 +56,11 @@ pub fn value(machine: &mut Machine, param: &Param, defines: &[Define]) -> Eval<V
     let written = machine.written(default.at).to_owned();
     typed(&default, name, kind, &written)?;
     let allowed = param.allowed.as_ref().map(|a| machine.located(a)).transpose()?;
+    if let Some((allowed, [lo, hi])) = allowed.as_ref().and_then(|a| Some((a, backwards(&a.value)?))) {
+        let error = Diagnostic::error("E0503", format!("`{name}` allows nothing: its range runs backwards"));
+        let help = format!("write the lower end first: `{hi}..{lo}`");
+        return Err(error.at(allowed.at, "backwards").help(help).into());
+    }
     if let Some(allowed) = &allowed {
         within(&default, name, allowed)?;
     }
@@ -73,6 +78,14 @@ pub fn value(machine: &mut Machine, param: &Param, defines: &[Define]) -> Eval<V
         Stop::Told(error) => Stop::Told(Box::new(error.fault(Fault::Usage))),
         Stop::Quiet => Stop::Quiet,
     })
+}
+
+/// The ends of a range that runs backwards.
+fn backwards(allowed: &Val) -> Option<[f64; 2]> {
+    match allowed {
+        Val::Range(lo, hi, _) if hi < lo => Some([*lo, *hi]),
+        _ => None,
+    }
 }
 
 /// The type of a name.

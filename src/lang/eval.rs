@@ -261,7 +261,9 @@ impl Machine<'_> {
         let error =
             Diagnostic::error("E0410", format!("{kind} cannot be called")).at(at, "a call").at(on.at, kind);
         match &base.kind {
-            ExprKind::Name(name) if callable(self.catalog).any(|w| w == name) => {
+            ExprKind::Name(name)
+                if callable(self.catalog).any(|w| w == name) && self.defined(name, at).is_some() =>
+            {
                 error.help(format!("here `{name}` is a name of this file: take another name for it")).into()
             }
             _ => error.help("remove the arguments, or put an operator before the `(`").into(),

@@ -16,30 +16,54 @@ pub enum Place {
 use Place::{Argument, Item, Method, Name};
 
 const MOVES: &str = "what changes a shape is written after it: `draw shape.move([x, y, z])`";
-const DRAWS: &str = "what is to be seen is drawn: `draw difference(base, [a, b])`, or `draw base - a`";
+const TURNS: &str = "what changes a shape is written after it: `draw shape.rotate_z(45deg)`, or `.rotate(axis: [x, y, z], by: 45deg)`";
+const SCALES: &str =
+    "what changes a shape is written after it: `draw shape.scale(2)`, or `.scale([x, y, z])`";
+const MIRRORS: &str = "what changes a shape is written after it: `draw shape.mirror([1, 0, 0])`";
+const FITS: &str = "what changes a shape is written after it: `draw shape.fit([0, 0, 0], height: 10)`, or `.scale([x, y, z])`";
+const MAPS: &str = "what changes a shape is written after it: `draw shape.matrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]])`";
+const TAKES: &str = "what is to be seen is drawn: `draw difference(base, [a, b])`, or `draw base - a`";
+const JOINS: &str = "what is to be seen is drawn: `draw union([a, b])`, or `draw a | b`";
+const MEETS: &str = "what is to be seen is drawn: `draw intersection([a, b])`, or `draw a & b`";
 const LET: &str = "a value is named by `let name = value`";
 const IMPORT: &str = "write `import \"file.pss\"`, or `import \"file.pss\" as name`";
-const FN: &str = "write `fn name(a, b = 1) = value`";
+const FN: &str = "write `fn name(a, b = 1) = value`; without a name, `fn(a) => value`";
 const HULL: &str = "there is no hull and no Minkowski sum; `capsule`, `tube`, `box(..., round: r)` and `.offset(r)` are exact round shapes";
 const OUTLINE: &str = "an outline is a list of points: `extrude([[0, 0], [10, 0], [0, 10]], h: 5)`";
-const WEAR: &str = "a material is worn by `.with(matte(#b8683c))`";
+pub const WEAR: &str = "a material is worn by `.with(matte(#b8683c))`";
 const EXACT: &str = "surfaces are exact: there is no number of facets to set";
 
 /// Words, where they stand, and what helps.
 const HABITS: &[(&[&str], Place, &str)] = &[
-    (&["translate", "rotate", "scale", "mirror", "multmatrix", "resize", "color"], Item, MOVES),
-    (&["union", "difference", "intersection", "merge"], Item, DRAWS),
+    (&["difference"], Item, TAKES),
+    (&["union", "merge"], Item, JOINS),
+    (&["intersection"], Item, MEETS),
     (&["hull", "minkowski"], Item, HULL),
-    (&["module", "function", "def", "func"], Item, FN),
+    (&["module", "function", "def", "func", "#macro"], Item, FN),
     (&["var", "const", "#declare", "#local"], Item, LET),
     (&["include", "use", "#include", "from"], Item, IMPORT),
-    (&["for"], Item, "a loop is a value, a list: `draw for i in 0..5 { sphere(r: 1, at: [3 * i, 0, 0]) }`"),
-    (&["if"], Item, "a choice is a value: `draw if n > 3 { a } else { b }`"),
+    (
+        &["for", "intersection_for", "#for"],
+        Item,
+        "a loop is a value, a list: `draw for i in 0..5 { sphere(r: 1, at: [3 * i, 0, 0]) }`",
+    ),
+    (&["if", "#if", "#ifdef", "#switch"], Item, "a choice is a value: `draw if n > 3 { a } else { b }`"),
     (&["while", "repeat", "#while"], Item, "write `for i in 0..n { ... }`, or a function that calls itself"),
     (&["return"], Item, "the value of a function is what stands after its `=`: `fn f(x) = 2 * x`"),
     (&["echo", "puts", "console"], Item, "write `print value`"),
     (&["assert"], Item, "write `expect condition`"),
     (&["light_source"], Item, "write `light(at: [x, y, z])`, or `light(direction: [x, y, z])` for a sun"),
+    (&["texture", "pigment", "finish", "interior"], Item, WEAR),
+    (
+        &["global_settings", "#version", "#default"],
+        Item,
+        "how the picture is made is said by `render(size: [640, 480], samples: 16)`",
+    ),
+    (
+        &["#end", "#else"],
+        Item,
+        "what belongs together stands in braces: `if a { b } else { c }`, `for i in 0..5 { a }`",
+    ),
     (&["background"], Item, "write `light sky(color: #dfe8ff)`"),
     (&["$", "$fn", "$fa", "$fs"], Item, EXACT),
     (&["#", "%"], Item, "what is to be seen through is drawn by `@ghost draw shape`"),
@@ -82,9 +106,13 @@ const HABITS: &[(&[&str], Place, &str)] = &[
     ),
     (&["str"], Name, "`print` takes any value, and lists of them: `print [\"r\", r]`"),
     (&["translate"], Name, MOVES),
+    (&["rotate"], Name, TURNS),
+    (&["scale"], Name, SCALES),
+    (&["mirror"], Name, MIRRORS),
+    (&["resize"], Name, FITS),
+    (&["multmatrix"], Name, MAPS),
     (&["color"], Name, WEAR),
     (&["atan"], Name, "write `atan2(y, x)`"),
-    (&["rotate", "scale", "mirror", "multmatrix", "resize"], Name, MOVES),
     (
         &["text"],
         Name,
@@ -195,6 +223,11 @@ const SAME: &[(&str, Place, &str)] = &[
 /// The word of ours that means the same.
 pub fn same(word: &str, place: Place) -> Option<&'static str> {
     SAME.iter().find(|(theirs, at, _)| *at == place && *theirs == word).map(|(_, _, ours)| *ours)
+}
+
+/// What to write instead of a word that begins an item, where that is no word of an item: of all places where it may be known.
+pub fn instead_of_item(word: &str) -> Option<&'static str> {
+    [Item, Name, Method].into_iter().find_map(|place| instead(word, place))
 }
 
 /// What to write instead of a word.

@@ -5,7 +5,7 @@ use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-use super::ast::{Arg, Args, Item, ItemKind, Word};
+use super::ast::{Arg, Args, Import, Item, ItemKind, Word};
 use super::budget::Budget;
 use super::defines::{self, Define};
 use super::eval::{Machine, later};
@@ -66,6 +66,7 @@ pub fn read(sources: &mut SourceMap, file: FileId, reading: &Reading, defines: &
         only: Default::default(),
         errors,
         unmet: Vec::new(),
+        named: Vec::new(),
         render: None,
         quiet: None,
     };
@@ -179,6 +180,13 @@ fn scene_unit<'a>(files: impl Iterator<Item = &'a [Item]>, errors: &mut Vec<Diag
     first.map_or(1e3, |(um, _)| um)
 }
 
+fn imported_twice(at: Span, first: Span) -> Diagnostic {
+    Diagnostic::error("E0402", "a file is imported twice")
+        .at(at, "the second time")
+        .at(first, "the first time")
+        .help("remove one of them; a second name for the same is `import \"file.pss\" as name`")
+}
+
 fn twice(what: &str, at: Span, first: Span) -> Diagnostic {
     Diagnostic::error("E0402", format!("`{what}` is given twice"))
         .at(at, "the second time")
@@ -206,6 +214,8 @@ struct Reader<'a> {
     errors: Vec<Diagnostic>,
     /// Expectations that are not met.
     unmet: Vec<Diagnostic>,
+    /// Shapes that the scene's own file names.
+    named: Vec<Draw>,
     /// The place of the `render` item.
     render: Option<Span>,
     /// The last item that failed because of another.
@@ -218,9 +228,14 @@ impl Reader<'_> {
             self.machine.module = k;
             self.names(module, modules);
             let root = k + 1 == modules.len();
-            for item in module.items.iter().filter(|item| root || matches!(item.kind, ItemKind::Print(_))) {
+            // Of a file that is imported nothing is seen; what it says and promises counts.
+            let counts = |item: &&Item| root || matches!(item.kind, ItemKind::Print(_) | ItemKind::Expect(_));
+            for item in module.items.iter().filter(counts) {
                 let done = self.item(item);
                 self.told(done, item.at);
+            }
+            if root && self.expects {
+                self.named = self.shapes_of(&module.items);
             }
             // Who has no steps left cannot look further.
             if !self.errors.iter().any(|e| matches!(e.code, "E0709" | "E0710")) {
@@ -228,6 +243,18 @@ impl Reader<'_> {
                 self.errors.extend(more);
             }
         }
+    }
+
+    /// The shapes that `let` items name.
+    fn shapes_of(&self, items: &[Item]) -> Vec<Draw> {
+        let names = &self.machine.names[self.machine.module];
+        let shape = |item: &Item| match (&item.kind, names.get(&order::defined(item)?.text)) {
+            (ItemKind::Let(name, _), Some(Some(Val::Shape(shape)))) => {
+                Some(Draw { shape: shape.clone(), at: name.at })
+            }
+            _ => None,
+        };
+        items.iter().filter_map(shape).collect()
     }
 
     /// The names of a file: those it imports, then its own.
@@ -238,8 +265,14 @@ impl Reader<'_> {
             decl.is_some_and(|d| d.params.iter().any(|p| matches!(p.kind, Kind::HalfSpace | Kind::Condition)))
         };
         let items = &module.items;
-        let known = module.imported().filter(|(import, _)| import.space.is_none());
-        let known = known.flat_map(|(_, from)| own_names(&modules[from].items));
+        let mut known: Vec<(&Import, usize)> = Vec::new();
+        for (import, from) in module.imported().filter(|(import, _)| import.space.is_none()) {
+            match known.iter().find(|(_, same)| *same == from) {
+                Some((first, _)) => self.errors.push(imported_twice(import.at, first.at)),
+                None => known.push((import, from)),
+            }
+        }
+        let known = known.into_iter().flat_map(|(_, from)| own_names(&modules[from].items));
         let own = items.iter().filter_map(order::defined);
         self.errors.extend(order::redefinitions(known.chain(own.clone())));
         let k = self.machine.module;
@@ -275,7 +308,7 @@ impl Reader<'_> {
     }
 
     fn finish(self) -> Outcome {
-        let Reader { machine, mut scene, only, errors, quiet, unmet, .. } = self;
+        let Reader { machine, mut scene, only, errors, quiet, unmet, named, .. } = self;
         let mut all = errors;
         if let (true, Some(at)) = (all.is_empty(), quiet) {
             let error =
@@ -292,7 +325,7 @@ impl Reader<'_> {
         if only.iter().any(|draws| !draws.is_empty()) {
             [scene.draws, scene.ghosts] = only;
         }
-        Ok(Read { scene, warnings: all, unmet })
+        Ok(Read { scene, warnings: all, unmet, named })
     }
 
     fn told<T>(&mut self, outcome: Eval<T>, at: Span) -> Option<T> {

@@ -32,7 +32,9 @@ pub fn number(text: &str, at: Span) -> Result<ExprKind, Box<Diagnostic>> {
         None if name.starts_with('_') => "digits stand together: `1000`".to_owned(),
         None => format!("the units are {listed}; for a product write `{digits} * {name}`"),
     };
+    let product = matches!(name, "pi" | "tau").then(|| format!("{digits} * {name}"));
     Err(Diagnostic::error("E0105", format!("`{name}` is not a unit"))
+        .fix_with(at, product.as_deref())
         .at(Span { start: at.start + digits.len() as u32, ..at }, "not a unit")
         .help(help)
         .into())

@@ -51,7 +51,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::{Path, PathBuf};
 
 use crate::diag::Diagnostic;
-use crate::scene::{Catalog, Scene};
+use crate::scene::{Catalog, Draw, Scene};
 use crate::source::{FileId, SourceMap, Span};
 
 pub(crate) use defines::TYPES;
@@ -103,6 +103,8 @@ pub struct Read {
     pub warnings: Vec<Diagnostic>,
     /// Expectations that are not met, where they were evaluated: errors.
     pub unmet: Vec<Diagnostic>,
+    /// The shapes that `let` items of the scene's own file name.
+    pub named: Vec<Draw>,
 }
 
 /// Reads the scene in `file`, which imports nothing and asks nothing of its shapes. `defines` are the `-D name=value` of the

@@ -56,6 +56,7 @@ impl Slip<'_> {
                 Some((Span { start: before?.end, end: before?.end, ..at }, "0".to_owned()))
             }
             "=" if self.before() == ".." => Some((at, String::new())),
+            "=" if after_value && self.opened_by_condition() => Some((at, "<=".to_owned())),
             "=" if after_value && self.bracket.is_some() => Some((at, ":".to_owned())),
             "=" if after_value => Some((at, "==".to_owned())),
             "&" => Some((before?.to(at), "and".to_owned())),
@@ -119,9 +120,23 @@ impl Slip<'_> {
             ),
             "(" if self.before() == "for" => told("a loop has no parentheses", "expected a name", LOOP),
             "{" => None,
+            _ if after_value && word != "then" && self.choosing(start) => told(
+                "the values of a choice stand in braces",
+                "expected `{`",
+                "write `if a { b } else { c }`",
+            ),
             _ if loops && after_value => told("the value of a loop stands in braces", "expected `{`", LOOP),
             _ => None,
         }
+    }
+
+    /// Whether an `if` has not come to its `{` yet.
+    fn choosing(&self, start: usize) -> bool {
+        let before = &self.all[start..self.i];
+        let last = before.iter().rposition(|t| matches!(self.text(t), "if" | "else" | "{"));
+        last.is_some_and(|i| {
+            self.text(&before[i]) == "if" || self.text(&before[i]) == "else" && i + 1 == before.len()
+        })
     }
 
     /// A comma that does not fit.
@@ -158,6 +173,11 @@ impl Slip<'_> {
     fn sign(&self, word: &str, after_value: bool) -> Option<[String; 3]> {
         let before = self.before();
         match word {
+            "=" if after_value && self.opened_by_condition() => told(
+                "a condition compares",
+                "one `=` does not",
+                "a solid is where a condition holds: `x**2 + y**2 <= 1`, `z < 60`",
+            ),
             "=" if self.bracket.is_some() && after_value => told(
                 "`=` has no place in arguments",
                 "expected `:`",
@@ -221,6 +241,13 @@ impl Slip<'_> {
             },
             _ => None,
         }
+    }
+
+    /// Whether the bracket that is open is that of a call that takes a condition, and something else than a name stands before.
+    fn opened_by_condition(&self) -> bool {
+        let word = self.bracket.and_then(|(_, j)| self.all.get(j.checked_sub(1)?)).map(|t| self.text(t));
+        matches!(word, Some("implicit" | "half_space")) && matches!(self.before(), "x" | "y" | "z")
+            || matches!(word, Some("implicit")) && self.before.is_some_and(|t| t.kind == TokenKind::Number)
     }
 
     /// The word whose call ends right before.

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use super::scan::{Token, TokenKind, tokens};
 use super::{habits, span};
-use crate::diag::{Diagnostic, nearest};
+use crate::diag::{Diagnostic, nearest, shown};
 use crate::source::{FileId, Span};
 
 /// The words that begin an item.
@@ -220,15 +220,18 @@ fn closing_of(opener: &str) -> &'static str {
 
 /// Something stands where an item should begin; `next` is the token after it.
 pub fn not_an_item(word: &str, next: &str, at: Span) -> Diagnostic {
-    let error = Diagnostic::error("E0106", format!("`{}` begins no item", word.escape_debug()));
+    let error = Diagnostic::error("E0106", format!("`{}` begins no item", shown(word)));
     let habit =
         if word.starts_with('#') && word.len() > 1 && habits::instead(word, habits::Place::Item).is_none() {
             "#"
         } else {
             word
         };
-    if let Some(help) = habits::instead(habit, habits::Place::Item) {
+    if let Some(help) = habits::instead_of_item(habit) {
         return error.at(at, "not an item").fix_with(at, habits::same(word, habits::Place::Item)).help(help);
+    }
+    if word == "fn" {
+        return error.at(at, "a function without a name").help("write `fn name(a, b = 1) = value`");
     }
     match nearest(word, ITEM_WORDS) {
         _ if next == "=" => {
@@ -236,6 +239,9 @@ pub fn not_an_item(word: &str, next: &str, at: Span) -> Diagnostic {
             error.help(format!("a name is given once, by `let {word} = ...`"))
         }
         Some(known) => error.at(at, "not a keyword").fix(at, known).help(format!("did you mean `{known}`?")),
+        None if next == "{" => error.at(at, "not an item").help(format!(
+            "arguments stand in parentheses, with their names, and what is to be seen is drawn: `draw {word}(...)`"
+        )),
         None if next == "(" => {
             let error = error.at(at, "not an item").fix(at, format!("draw {word}"));
             error.help(format!("what is to be seen is drawn: `draw {word}(...)`"))

@@ -5,7 +5,7 @@ use super::keywords::{self, usage};
 use super::scan::{Token, TokenKind, tokens};
 use super::split::{ITEM_WORDS, not_an_item};
 use super::{slips, span};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, shown};
 use crate::source::{FileId, Span};
 
 /// An item that the grammar refused at byte `stop` of `text`.
@@ -90,7 +90,7 @@ fn innermost(before: &[Token]) -> Option<(&Token, usize)> {
 /// Mistakes before the value of an item: its name, its `=`, its `(`.
 fn header(item: &str, all: &[Token], i: usize, refused: &Refused, at: Span) -> Option<Diagnostic> {
     let found = all.get(i).map(|t| t.text(refused.text));
-    let shown = found.map_or(String::new(), |f| format!(", found `{}`", f.escape_debug()));
+    let shown = found.map_or(String::new(), |f| format!(", found `{}`", shown(f)));
     if i == 1 && matches!(item, "let" | "fn" | "param" | "material") {
         let error = Diagnostic::error("E0101", format!("expected a name after `{item}`{shown}"));
         let help = match found {
@@ -120,6 +120,13 @@ fn header(item: &str, all: &[Token], i: usize, refused: &Refused, at: Span) -> O
                 .at(at, "expected `=`")
                 .fix(Span { end: at.start, ..at }, "= ")
                 .help("write `fn f(x) = { ... }`"),
+        );
+    }
+    if item == "units" && i == 2 {
+        return Some(
+            Diagnostic::error("E0101", format!("expected a unit of length{shown}"))
+                .at(at, "not a unit")
+                .help(format!("write {}", usage(item))),
         );
     }
     let wants_arguments = matches!(
@@ -161,6 +168,11 @@ impl Slip<'_> {
         if let Some(error) = header(item, self.all, self.i, self.refused, at) {
             return error;
         }
+        if item == "@" && !self.all[..self.i].iter().any(|t| self.text(t) == "draw") {
+            let error = Diagnostic::error("E0101", "an attribute stands before `draw`");
+            let error = error.at(at, "expected `draw`").fix(Span { end: at.start, ..at }, "draw ");
+            return error.help("write `@only draw shape`");
+        }
         let after_value = self.before.is_some_and(|t| t.ends_operand(self.refused.text));
         if let Some(error) = self.named(word, after_value) {
             return error;
@@ -177,7 +189,7 @@ impl Slip<'_> {
     }
 
     fn after_value(&self, word: &str, at: Span) -> Diagnostic {
-        let shown = word.escape_debug();
+        let shown = shown(word);
         let Some((open, _)) = self.bracket else {
             return Diagnostic::error("E0101", format!("`{shown}` does not fit after the value"))
                 .at(at, "expected an operator or the end of the item")
@@ -198,7 +210,7 @@ impl Slip<'_> {
     }
 
     fn want_value(&self, word: &str, at: Span) -> Diagnostic {
-        let shown = word.escape_debug();
+        let shown = shown(word);
         let after = self.before.map_or("", |t| self.text(t));
         let error = Diagnostic::error("E0101", format!("expected a value after `{after}`, found `{shown}`"))
             .at(at, "not a value");

@@ -38,8 +38,11 @@ impl Machine<'_> {
         callable(self.catalog).for_each(|word| known.push(word));
         builtins::CONSTANTS.iter().for_each(|(word, _, _)| known.push(word));
         let error = Diagnostic::error("E0401", format!("`{name}` is not known")).at(at, "unknown name");
-        if let Some(help) = habits::instead(name, habits::Place::Name) {
-            return error.fix_with(at, habits::same(name, habits::Place::Name)).help(help);
+        let lower = name.to_ascii_lowercase();
+        for name in [name, &lower] {
+            if let Some(help) = habits::instead(name, habits::Place::Name) {
+                return error.fix_with(at, habits::same(name, habits::Place::Name)).help(help);
+            }
         }
         if let Some(file) = self.imported_with(name) {
             let error = error.fix(at, format!("{file}.{name}"));

@@ -52,6 +52,18 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// A scene of those of some shapes that are no part of what this one draws.
+    pub fn of_idle(&self, shapes: &[Draw]) -> Scene {
+        let mut known = HashMap::new();
+        for draw in self.draws.iter().chain(&self.ghosts) {
+            draw.shape.written_out(&mut known);
+        }
+        let idle = shapes.iter().filter(|draw| !known.contains_key(&Arc::as_ptr(&draw.shape.0)));
+        Scene { draws: idle.cloned().collect(), materials: self.materials.clone(), ..Scene::default() }
+    }
+}
+
 /// An item that may carry a name of its own.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Named {

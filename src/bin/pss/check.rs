@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use pss::diag::Severity;
+use pss::diag::{Diagnostic, Severity};
 use pss::prepare::Options;
 
 use crate::args::CheckArgs;
 use crate::console::{Console, Failure};
 use crate::fix;
-use crate::load::{self, Loaded};
+use crate::load::{self, Asks, Loaded};
 
 /// Runs the command on all scenes; the exit code is that of the first that failed.
 pub fn run(args: &CheckArgs, console: &Console) -> u8 {
@@ -29,9 +29,12 @@ pub fn run(args: &CheckArgs, console: &Console) -> u8 {
 /// Shows what is to be said of a scene; gives how many warnings and how many notes there are.
 fn check(args: &CheckArgs, scene: &Path, console: &Console) -> Result<[usize; 2], Failure> {
     let options = Options { ghosts: true, measure_all: true, write_out: true, ..Options::default() };
-    let Loaded { shot, outline, sources, warnings, unmet, .. } =
-        load::load_with(scene, &args.read, options, [false, true], console)?;
-    let findings = pss::check::findings(&shot, &outline);
+    let asks = Asks { quiet: false, expects: true, idle: true };
+    let Loaded { shot, outline, sources, warnings, unmet, idle, .. } =
+        load::load_with(scene, &args.read, options, asks, console)?;
+    let mut findings = pss::check::findings(&shot, &outline);
+    // The scene is made without what it does not draw: no error, but to be known.
+    findings.extend(idle.into_iter().map(|error| Diagnostic { severity: Severity::Warning, ..error }));
     console.show(&findings, &sources);
     if !unmet.is_empty() {
         return Err(Failure::new(unmet, sources));

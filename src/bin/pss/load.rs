@@ -43,6 +43,8 @@ pub struct Loaded {
     pub warnings: usize,
     /// Expectations that are not met, if they were to be evaluated.
     pub unmet: Vec<Diagnostic>,
+    /// What is wrong with shapes that are named and not drawn, if that was asked.
+    pub idle: Vec<Diagnostic>,
 }
 
 /// A scene that was read and understood.
@@ -67,15 +69,26 @@ pub fn load(
     quiet: bool,
     console: &Console,
 ) -> Result<Loaded, Failure> {
-    load_with(scene, args, options, [quiet, false], console)
+    load_with(scene, args, options, Asks { quiet, ..Asks::default() }, console)
 }
 
-/// The same, with the scene's expectations evaluated if it is said so.
+/// What a command wants to know of a scene.
+#[derive(Clone, Copy, Default, Debug)]
+pub struct Asks {
+    /// Nothing of warnings.
+    pub quiet: bool,
+    /// Whether it keeps its expectations.
+    pub expects: bool,
+    /// What is wrong with shapes that it names and does not draw.
+    pub idle: bool,
+}
+
+/// The same, with more that is asked.
 pub fn load_with(
     scene: &Path,
     args: &ReadArgs,
     options: Options,
-    [quiet, expects]: [bool; 2],
+    Asks { quiet, expects, idle }: Asks,
     console: &Console,
 ) -> Result<Loaded, Failure> {
     let start = Instant::now();
@@ -93,8 +106,10 @@ pub fn load_with(
     let mut inputs: Vec<PathBuf> = sources.files().filter_map(|f| f.path.clone()).collect();
     let others = options.inputs.list();
     inputs.extend(others.into_iter().filter(|path| !inputs.contains(path)).collect::<Vec<_>>());
+    let idle = if idle { prepare::prepare(&read.scene.of_idle(&read.named), &options).err() } else { None };
     Ok(Loaded {
         shot: prepared.shot,
+        idle: idle.unwrap_or_default(),
         inputs,
         scans: prepared.scans,
         parsing,

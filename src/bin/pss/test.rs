@@ -28,7 +28,8 @@ pub fn run(args: &TestArgs, console: &Console) -> Result<u8, Failure> {
     for scene in scenes {
         let start = Instant::now();
         let options = Options { measure_all: true, ..Options::default() };
-        let done = load::load_with(&scene, &args.read, options, [true, true], console);
+        let asks = load::Asks { quiet: true, expects: true, idle: false };
+        let done = load::load_with(&scene, &args.read, options, asks, console);
         let done = done.and_then(|loaded| match loaded.unmet.is_empty() {
             true => Ok(()),
             false => Err(Failure::new(loaded.unmet, loaded.sources)),
@@ -54,8 +55,14 @@ pub fn run(args: &TestArgs, console: &Console) -> Result<u8, Failure> {
 /// The scenes of a folder and the folders in it, in the order of their names.
 fn scenes(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let missing = |path: &Path, e: std::io::Error| {
-        let message = format!("cannot read `{}`: {}", path.display(), e.kind());
-        Failure::from(Diagnostic::error("E0601", message).fault(Fault::Missing))
+        let error = match e.kind() {
+            std::io::ErrorKind::NotFound => {
+                Diagnostic::error("E0601", format!("there is no `{}`", path.display()))
+                    .help("name a scene or a folder of scenes")
+            }
+            _ => Diagnostic::error("E0601", format!("cannot read `{}`", path.display())).help(e.to_string()),
+        };
+        Failure::from(error.fault(Fault::Missing))
     };
     if folder.is_file() {
         return Ok(vec![folder.to_owned()]);
