@@ -24,6 +24,7 @@ extern crate alloc;
 
 pub mod check;
 pub mod cloud;
+pub mod compare;
 pub mod csg;
 mod deep;
 pub mod diag;

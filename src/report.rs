@@ -111,8 +111,8 @@ pub fn printable(text: &str) -> String {
 fn clean(text: &str) -> Cow<'_, str> {
     if LONGEST < text.len() {
         // A name of a million letters is told by where it begins.
-        let cut = text.floor_char_boundary(LONGEST);
-        return Cow::Owned(format!("{}...", clean(&text[..cut])));
+        let begin: String = text.chars().take(LONGEST / 4).collect();
+        return Cow::Owned(format!("{}...", clean(&begin)));
     }
     if !text.chars().any(is_hidden) {
         return Cow::Borrowed(text);

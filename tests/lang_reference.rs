@@ -90,12 +90,14 @@ fn said(text: &str) -> Vec<String> {
 /// The codes told by the command of an example, in a folder that holds its files.
 fn commanded(example: &str) -> Vec<String> {
     let folder = Folder::new();
-    let first = example.lines().next().unwrap().strip_prefix("$ pss ");
-    let command = first.unwrap_or("check scene.pss");
-    let text = if first.is_some() { example.split_once('\n').unwrap_or_default().1 } else { example };
+    let mut commands: Vec<&str> = example.lines().map_while(|line| line.strip_prefix("$ pss ")).collect();
+    let text = example.lines().skip(commands.len());
+    if commands.is_empty() {
+        commands.push("check scene.pss");
+    }
     let mut name = "scene.pss".to_owned();
     let mut files = std::collections::BTreeMap::new();
-    for line in text.lines() {
+    for line in text {
         if let Some(next) = line.strip_prefix("--- ") {
             next.clone_into(&mut name);
         }
@@ -108,7 +110,10 @@ fn commanded(example: &str) -> Vec<String> {
     for (name, text) in &files {
         folder.write(name, text);
     }
-    let told = folder.run(&command.split(' ').collect::<Vec<_>>()).stderr;
+    let mut told = String::new();
+    for command in commands {
+        told = folder.run(&command.split(' ').collect::<Vec<_>>()).stderr;
+    }
     let codes = told.lines().filter_map(|line| {
         let (severity, rest) = line.split_once('[')?;
         let is_told = ["error", "warning", "note"].contains(&severity);

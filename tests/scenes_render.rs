@@ -46,7 +46,7 @@ fn pixels(path: &Path, defines: &[(String, String)]) -> Vec<[f32; 4]> {
         expects: true,
         memory: pss::lang::MEMORY,
     };
-    let Read { scene, warnings, unmet } = pss::lang::read_with(&mut sources, file, &reading)
+    let Read { scene, warnings, unmet, .. } = pss::lang::read_with(&mut sources, file, &reading)
         .unwrap_or_else(|e| panic!("{name}: {}", pss::report::text(&e, &sources, false)));
     assert!(unmet.is_empty(), "{name}: {}", pss::report::text(&unmet, &sources, false));
     assert!(warnings.is_empty(), "{name}: {}", pss::report::text(&warnings, &sources, false));

@@ -9,8 +9,8 @@ pub struct Code {
     pub told: &'static str,
     /// How it comes about, and what helps.
     pub why: &'static str,
-    /// A scene that is told so; empty where it takes more than scenes: a full disk, a fault. A first line `$ pss ...` is the
-    /// command that tells (else `pss check scene.pss`), and a line `--- NAME` begins another file.
+    /// A scene that is told so; empty where it takes more than scenes: a full disk, a fault. First lines `$ pss ...` are
+    /// commands of which the last tells (else `pss check scene.pss`), and a line `--- NAME` begins another file.
     pub bad: &'static str,
     /// The same scene, repaired.
     pub good: &'static str,
@@ -457,6 +457,24 @@ pub const CODES: &[Code] = &[
         ["expect 1 < 2 within 1%\ndraw sphere(r: 1)", "expect 1.001 ~= 1 within 1%\ndraw sphere(r: 1)"],
     ),
     code(
+        "E0803",
+        "Two pictures differ by more than is allowed.",
+        "Look at both, and at `--diff FILE.png`; `--max X` allows so much.",
+        [
+            "$ pss render scene.pss -o a.png --size 8x8\n$ pss render scene.pss -o b.png --size 8x8 -D r=2\n$ pss compare a.png b.png\nparam r = 1\ncamera(eye: [0, -9, 0], look_at: [0, 0, 0])\ndraw sphere(r: r)",
+            "$ pss render scene.pss -o a.png --size 8x8\n$ pss render scene.pss -o b.png --size 8x8 -D r=1\n$ pss compare a.png b.png\nparam r = 1\ncamera(eye: [0, -9, 0], look_at: [0, 0, 0])\ndraw sphere(r: r)",
+        ],
+    ),
+    code(
+        "E0804",
+        "Two pictures have different sizes.",
+        "Render both at one `--size`.",
+        [
+            "$ pss render scene.pss -o a.png --size 8x8\n$ pss render scene.pss -o b.png --size 8x9\n$ pss compare a.png b.png\ndraw sphere(r: 1)",
+            "$ pss render scene.pss -o a.png --size 8x8\n$ pss render scene.pss -o b.png --size 8x8\n$ pss compare a.png b.png\ndraw sphere(r: 1)",
+        ],
+    ),
+    code(
         "E0900",
         "The program is wrong.",
         "This is a fault of pss, not of the scene; please report it.",
@@ -491,8 +509,8 @@ pub const CODES: &[Code] = &[
         "A scan is noisier than its surface smooths.",
         "Raise `smoothing:`.",
         [
-            "draw points(sphere(r: 1), samples: 2000, noise: 0.1)",
-            "draw points(sphere(r: 1), samples: 2000, noise: 0.1, smoothing: 3)",
+            "draw points(sphere(r: 1), samples: 400, noise: 0.15)",
+            "draw points(sphere(r: 1), samples: 400, noise: 0.08)",
         ],
     ),
     code(
@@ -514,7 +532,7 @@ pub const CODES: &[Code] = &[
         "W0107",
         "The width of a scan's surface holds very many samples: rays take long.",
         "Lower `smoothing:` or `h:`, or leave out what is sparse beside dense samples.",
-        ["draw points(sphere(r: 1), samples: 4000, h: 0.8)", "draw points(sphere(r: 1), samples: 4000)"],
+        ["draw points(sphere(r: 1), samples: 1500, h: 0.9)", "draw points(sphere(r: 1), samples: 1500)"],
     ),
     code(
         "W0121",

@@ -4,6 +4,7 @@ use super::ast::ExprKind;
 use super::value::MAX_NUMBER;
 use super::{keywords, scan, units};
 use crate::diag::{Diagnostic, nearest};
+use crate::num::srgb;
 use crate::source::Span;
 
 /// A number with the unit that touches it.
@@ -71,12 +72,7 @@ pub fn color(text: &str, at: Span) -> Result<[f32; 3], Box<Diagnostic>> {
                 .into());
         }
     };
-    Ok(channels.map(|c| linear(f64::from(c) / 255.0) as f32))
-}
-
-/// One channel of sRGB as linear light (IEC 61966-2-1).
-fn linear(c: f64) -> f64 {
-    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+    Ok(channels.map(|c| srgb::decode(f64::from(c) / 255.0) as f32))
 }
 
 /// A string, its quotes removed and its escapes resolved.

@@ -9,3 +9,4 @@ pub mod median;
 pub mod monomials;
 pub mod power;
 pub mod roots;
+pub mod srgb;

@@ -11,7 +11,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 pub use self::exr::{read_exr, write_exr};
-pub use self::png::write_png;
+pub use self::png::{read_png, write_png, write_rgb};
 pub use whole::{Sink, write_whole};
 
 use crate::film::Film;

@@ -1,9 +1,10 @@
 //! PNG files: what a display shows of a film.
 
-use std::io;
+use std::io::{self, BufReader};
+use std::path::Path;
 
 use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder, ImageError};
+use image::{ExtendedColorType, ImageEncoder, ImageError, ImageFormat, ImageReader};
 
 use super::tone;
 use crate::film::Film;
@@ -17,13 +18,13 @@ pub fn write_png(film: &Film, exposure: f64, tone: Tone, sink: &mut dyn io::Writ
     for [r, g, b, _] in &film.rgba {
         bytes.extend(display.of([*r, *g, *b]));
     }
+    write_rgb(film.size, &bytes, sink)
+}
+
+/// Writes 8-bit sRGB, three bytes a pixel, row by row from the top left.
+pub fn write_rgb([w, h]: [u32; 2], bytes: &[u8], sink: &mut dyn io::Write) -> io::Result<()> {
     let mut remembering = Remembering { sink, failure: None };
-    let encoded = PngEncoder::new(&mut remembering).write_image(
-        &bytes,
-        film.size[0],
-        film.size[1],
-        ExtendedColorType::Rgb8,
-    );
+    let encoded = PngEncoder::new(&mut remembering).write_image(bytes, w, h, ExtendedColorType::Rgb8);
     if let Some(e) = remembering.failure {
         return Err(e);
     }
@@ -31,6 +32,19 @@ pub fn write_png(film: &Film, exposure: f64, tone: Tone, sink: &mut dyn io::Writ
         ImageError::IoError(e) => e,
         e => io::Error::other(e),
     })
+}
+
+/// Reads a PNG of any depth: its size, and red, green, blue and coverage from 0 to 1 as they are encoded, row by row from the top
+/// left. Fails where it cannot be read or is broken.
+pub fn read_png(path: &Path) -> io::Result<([u32; 2], Vec<[f32; 4]>)> {
+    let mut reader = ImageReader::new(BufReader::new(std::fs::File::open(path)?));
+    reader.set_format(ImageFormat::Png);
+    let image = reader.decode().map_err(|e| match e {
+        ImageError::IoError(e) => e,
+        e => io::Error::new(io::ErrorKind::InvalidData, e),
+    })?;
+    let image = image.into_rgba32f();
+    Ok(([image.width(), image.height()], image.pixels().map(|p| p.0).collect()))
 }
 
 /// Keeps the first failure: the encoder writes the end of the file when it is dropped and says nothing if

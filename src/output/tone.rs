@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use crate::num::srgb;
 use crate::shot::settings::Tone;
 
 /// How linear colours become 8-bit display values.
@@ -58,7 +59,7 @@ static CODES: LazyLock<Codes> = LazyLock::new(|| {
     let mut least = [0.0; 257];
     least[256] = f32::INFINITY;
     for (code, least) in least[..256].iter_mut().enumerate().skip(1) {
-        let exact = linear_from_srgb((code as f64 - 0.5) / 255.0);
+        let exact = srgb::decode((code as f64 - 0.5) / 255.0);
         let near = exact as f32;
         *least = if f64::from(near) < exact { near.next_up() } else { near };
     }
@@ -68,11 +69,6 @@ static CODES: LazyLock<Codes> = LazyLock::new(|| {
     });
     Codes { least, first }
 });
-
-/// The linear value of an sRGB value in [0, 1] (IEC 61966-2-1).
-fn linear_from_srgb(c: f64) -> f64 {
-    if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
-}
 
 /// Luminance L becomes L / (1 + L), hue stays (Reinhard, Stark, Shirley and Ferwerda 2002, equation 3).
 pub fn reinhard(color: [f32; 3]) -> [f32; 3] {

@@ -36,6 +36,8 @@ pub enum Command {
     Test(TestArgs),
     /// Say what a word of the language, or the code of a message, means; without one, list all words
     Explain(ExplainArgs),
+    /// Say how far two pictures are apart
+    Compare(CompareArgs),
     /// Serve an editor: diagnostics, hover, completion, definitions, formatting
     Lsp(LspArgs),
     /// Say what a cloud of points is like, or convert it
@@ -101,6 +103,34 @@ pub struct ExplainArgs {
     /// How messages look on standard error
     #[arg(long, value_enum, default_value_t = MessageFormat::Text)]
     pub format: MessageFormat,
+}
+
+/// Arguments of `compare`.
+#[derive(Group, Debug)]
+pub struct CompareArgs {
+    /// A picture, .png or .exr
+    pub a: PathBuf,
+    /// Another of the same size
+    pub b: PathBuf,
+    /// How difference is measured: rmse (of the numbers), flip (what an eye sees, 0 to 1) or block (levels of 255 by which some
+    /// 3 x 3 pixels are all off to the same side); without it all are printed, and the first decides
+    #[arg(long, value_name = "rmse|flip|block", value_parser = crate::compare::metric)]
+    pub metric: Option<crate::compare::MetricWord>,
+    /// The largest difference that passes; more exits with 1
+    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = at_most)]
+    pub max: Option<f64>,
+    /// Write where they differ as a picture: black for nothing, light for the most
+    #[arg(long, value_name = "FILE")]
+    pub diff: Option<PathBuf>,
+    /// How messages look on standard error
+    #[arg(long, value_enum, default_value_t = MessageFormat::Text)]
+    pub format: MessageFormat,
+}
+
+/// A difference, none below zero.
+fn at_most(text: &str) -> Result<f64, String> {
+    let x: Option<f64> = text.parse().ok();
+    x.filter(|x| 0.0 <= *x).ok_or_else(|| "a number from 0 on".to_owned())
 }
 
 /// Arguments of `lsp`.
@@ -182,6 +212,7 @@ impl Command {
             Command::Fmt(FmtArgs { format, .. }) | Command::Explain(ExplainArgs { format, .. }) => {
                 CloudArgs { threads: 0, format: *format, lenient: false }
             }
+            Command::Compare(args) => CloudArgs { threads: 0, format: args.format, lenient: false },
             Command::Lsp(_) => CloudArgs { threads: 0, format: MessageFormat::Text, lenient: false },
             Command::Cloud(CloudCommand::Info(args)) => args.common,
             Command::Cloud(CloudCommand::Convert(args)) => args.common,

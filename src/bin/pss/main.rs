@@ -4,6 +4,7 @@
 mod args;
 mod check;
 mod cloud;
+mod compare;
 mod console;
 mod deps;
 mod dump;
@@ -47,6 +48,7 @@ fn main() -> ExitCode {
             Command::Fmt(args) => fmt::run(args, &console),
             Command::Dump(args) => dump::run(args, &console).map(|()| 0),
             Command::Test(args) => test::run(args, &console),
+            Command::Compare(args) => compare::run(args, &console),
             Command::Explain(args) => explain::run(args).map(|()| 0),
             Command::Lsp(args) => lsp::run(args),
             Command::Cloud(command) => cloud::run(command, &console).map(|()| 0),
