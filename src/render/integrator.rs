@@ -13,6 +13,9 @@ use crate::geom::{Beam, Interval, Ray};
 use crate::shot::settings::Integrator;
 use crate::solid::Counts;
 
+/// The pair of a sample that chooses a place on the lens: none of those that lights take.
+const LENS_PAIR: u32 = 1 << 20;
+
 /// Everything that painting a pixel needs.
 pub struct Painter<'a, S> {
     scenery: &'a S,
@@ -78,7 +81,10 @@ impl<'a, S: Scenery> Painter<'a, S> {
         });
         let mut sum = [0.0_f32; 4];
         for ([dx, dy], sample) in PixelSampler::new(settings.seed, x, y, settings.samples).samples() {
-            let ray = ray_at(dx, dy);
+            // A single sample is what `probe` sees: it goes through the middle of the lens as well.
+            let on_lens = || if settings.samples == 1 { [0.0; 2] } else { sample.pair(LENS_PAIR) };
+            let [x, y] = [f64::from(x) + dx, f64::from(y) + dy];
+            let ray = self.view.camera.ray_through(x, y, settings.size, on_lens);
             // A single sample goes through the centre as well.
             let seen = centre.filter(|_| settings.samples == 1).unwrap_or_else(|| tracer.see(&ray));
             let mut value = self.value(tracer, &ray, seen.as_ref(), sample);

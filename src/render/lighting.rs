@@ -27,7 +27,10 @@ impl Lights {
         for light in lights {
             match light {
                 Light::Sky { color } => sky = Some(plus(sky.unwrap_or_default(), *color)),
-                Light::Sun { color, .. } | Light::Point { color, .. } | Light::Headlight { color } => {
+                Light::Sun { color, .. }
+                | Light::Point { color, .. }
+                | Light::Area { color, .. }
+                | Light::Headlight { color } => {
                     if *color != [0.0; 3] {
                         shining.push(*light);
                     }
@@ -100,18 +103,19 @@ fn arriving_from<S: Scenery>(
         }
         Light::Point { at, falloff, color } => {
             let to_light = at - seen.surface.point;
-            let cosine = seen.normal.dot(to_light.normalize_or_zero());
-            if cosine <= 0.0 {
-                return None;
-            }
-            let start = start(seen);
-            // A surface that the light itself lies on does not cover it.
-            let before = Interval::new(0.0, 1.0_f64.next_down());
-            let shadow = Ray::new(start, at - start);
-            if !shadow.is_valid() || tracer.shadowed(&shadow, before) {
-                return None;
-            }
+            let cosine = from_place(tracer, seen, at)?;
             Some((color, if falloff { cosine / to_light.length_squared() } else { cosine }))
+        }
+        Light::Area { at, half, facing, color } => {
+            // An even place on the rectangle, whose radiance is that of all its light over its area and pi.
+            let [u, v] = sample.pair(pair).map(|x| 2.0 * x - 1.0);
+            let at = at + u * half[0] + v * half[1];
+            let to_light = at - seen.surface.point;
+            let shines = -facing.dot(to_light.normalize_or_zero());
+            if shines <= 0.0 {
+                return None;
+            }
+            Some((color, from_place(tracer, seen, at)? * shines / to_light.length_squared()))
         }
         Light::Headlight { color } => {
             let cosine = -seen.normal.dot(ray.dir.normalize_or_zero());
@@ -119,6 +123,19 @@ fn arriving_from<S: Scenery>(
         }
         Light::Sky { .. } => None,
     }
+}
+
+/// The cosine under which light of a place falls on a surface; `None` where it does not, or something stands between.
+fn from_place<S: Scenery>(tracer: &mut Tracer<S>, seen: &Seen, at: DVec3) -> Option<f64> {
+    let cosine = seen.normal.dot((at - seen.surface.point).normalize_or_zero());
+    if cosine <= 0.0 {
+        return None;
+    }
+    let start = start(seen);
+    // A surface that the light itself lies on does not cover it.
+    let before = Interval::new(0.0, 1.0_f64.next_down());
+    let shadow = Ray::new(start, at - start);
+    (shadow.is_valid() && !tracer.shadowed(&shadow, before)).then_some(cosine)
 }
 
 /// A direction to the sun's disc, even in solid angle, and what its cosine is to be multiplied with: the mean

@@ -23,6 +23,16 @@ pub const DECL: Decl = Decl {
             Kind::Choice(&["perspective", "orthographic", "spherical"]),
             "the projection; with `height` alone it is orthographic",
         ),
+        Param::named(
+            "aperture",
+            Kind::Size,
+            "the diameter of the lens: what is not in focus is blurred; default 0",
+        ),
+        Param::named(
+            "focus",
+            Kind::Length,
+            "how far from the eye, along the view, things are in focus; default at `look_at`",
+        ),
     ],
     example: "camera(eye: [10, -20, 10], look_at: [0, 0, 0], fov: 30deg)",
 };
@@ -48,6 +58,16 @@ pub struct Camera {
     up: DVec3,
     forward: DVec3,
     lens: Lens,
+    opening: Option<Opening>,
+}
+
+/// The opening of a thin lens: a disc about the eye, across the view.
+#[derive(Clone, Copy, PartialEq, Debug)]
+struct Opening {
+    /// World length, above zero.
+    radius: f64,
+    /// How far ahead of the eye the plane lies in which all rays of a place meet, world length, above zero.
+    focus: f64,
 }
 
 /// How places in the picture become rays.
@@ -70,7 +90,25 @@ pub fn build(call: &Call) -> Result<Camera, BuildError> {
         call.vec3("look_at").ok_or_else(|| error("look_at", "`look_at` is missing", "look_at: [x, y, z]"))?;
     let lens = lens(call)?;
     let up = call.vec3("up").unwrap_or(DVec3::Z);
-    Camera::new(eye, look_at, up, lens)
+    let opening = opening(call, lens, eye.distance(look_at))?;
+    Ok(Camera { opening, ..Camera::new(eye, look_at, up, lens)? })
+}
+
+fn opening(call: &Call, lens: Lens, usual: f64) -> Result<Option<Opening>, BuildError> {
+    let diameter = call.number("aperture").unwrap_or(0.0);
+    let focus = call.number("focus");
+    if let Some(focus) = focus.filter(|f| !(f.is_finite() && 0.0 < *f)) {
+        let help = "what is in focus lies ahead of the eye";
+        return Err(error("focus", format!("`focus` is {focus}"), help));
+    }
+    if focus.is_some() && call.get("aperture").is_none() {
+        return Err(error("focus", "without `aperture:` everything is in focus", "aperture: 5"));
+    }
+    if lens == Lens::Spherical && call.get("aperture").is_some() {
+        return Err(error("aperture", "a spherical camera has no lens", "leave `aperture:` out"));
+    }
+    let opening = Opening { radius: 0.5 * diameter, focus: focus.unwrap_or(usual) };
+    Ok((0.0 < opening.radius).then_some(opening))
 }
 
 fn error(param: &'static str, message: impl Into<String>, help: impl Into<String>) -> BuildError {
@@ -123,7 +161,7 @@ impl Camera {
             return Err(error("up", "`up` is parallel to the view", help));
         }
         let right = right.normalize();
-        Ok(Camera { eye, right, up: right.cross(forward), forward, lens })
+        Ok(Camera { eye, right, up: right.cross(forward), forward, lens, opening: None })
     }
 
     /// A three-quarter view that holds a box whatever the shape of the picture; of an empty or unbounded box,
@@ -145,7 +183,7 @@ impl Camera {
             .into_iter()
             .fold(0.0, f64::max);
         let eye = center + FITTED_MARGIN * distance * toward;
-        Camera { eye, right, up, forward: -toward, lens: Lens::Fitted { half_side } }
+        Camera { eye, right, up, forward: -toward, lens: Lens::Fitted { half_side }, opening: None }
     }
 
     /// The ray through a place of a picture of `size` pixels. Places are continuous and start at the top left:
@@ -171,11 +209,24 @@ impl Camera {
         }
     }
 
+    /// The same through another place of the lens than its middle: `on_lens` are two numbers in [0, 1), spread evenly over its disc.
+    /// Where the lens has no opening that is [`Camera::ray`].
+    pub fn ray_through(&self, x: f64, y: f64, size: [u32; 2], on_lens: impl FnOnce() -> [f64; 2]) -> Ray {
+        let ray = self.ray(x, y, size);
+        let Some(Opening { radius, focus }) = self.opening else { return ray };
+        let [u, v] = on_lens();
+        let (sin, cos) = (TAU * v).sin_cos();
+        let aside = radius * u.sqrt() * (cos * self.right + sin * self.up);
+        // The direction reaches a length of one along the view: the focus is met at t = focus.
+        Ray::new(ray.origin + aside, ray.dir - aside / focus)
+    }
+
     /// All rays through a patch of the picture, given two corners of it; `None` where they are not means of those through
-    /// the corners.
+    /// the corners, or start from a lens.
     pub fn beam(&self, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2], size: [u32; 2]) -> Option<Beam> {
         let corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(|(x, y)| self.ray(x, y, size));
-        let straight = self.lens != Lens::Spherical && corners.iter().all(Ray::is_valid);
+        let straight =
+            self.lens != Lens::Spherical && self.opening.is_none() && corners.iter().all(Ray::is_valid);
         straight.then(|| Beam::around(&corners))
     }
 

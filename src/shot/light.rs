@@ -7,17 +7,24 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
+use crate::geom::tolerance;
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};
 
 /// The `light` item.
 pub const DECL: Decl = Decl {
     word: "light",
     group: Group::Light,
-    doc: "A sun (`direction`), a point light (`at`) or, by `color` alone, a sky.",
+    doc: "A sun (`direction`), a point light (`at`), an area light (`at`, `size` and `look_at`) or, by `color` alone, a sky.",
     params: &[
         Param::named("direction", Kind::Vector(3), "a sun: the way its light travels"),
         Param::named("softness", Kind::Angle, "the sun's full angular diameter; default 0deg"),
         Param::named("at", Kind::Vector(3), "a point light: where it is"),
+        Param::named(
+            "size",
+            Kind::Vector(2),
+            "an area light: width and height of a rectangle in the middle of which `at` is",
+        ),
+        Param::named("look_at", Kind::Vector(3), "the point that an area light faces; behind it is no light"),
         Param::named("falloff", Kind::Bool, "whether a point light fades with distance; default true"),
         Param::named("color", Kind::Color, "its colour; default white"),
         Param::named("intensity", Kind::Number, "a factor of the colour; default 1"),
@@ -43,6 +50,17 @@ pub enum Light {
         at: DVec3,
         /// Whether it fades with the square of the distance, 1 at one scene unit.
         falloff: bool,
+        /// Colour times intensity.
+        color: [f32; 3],
+    },
+    /// Light from one side of a rectangle; from afar as bright as a point light of its colour, along its axis.
+    Area {
+        /// The middle.
+        at: DVec3,
+        /// Half the sides, vectors.
+        half: [DVec3; 2],
+        /// Unit vector across it, to where it shines.
+        facing: DVec3,
         /// Colour times intensity.
         color: [f32; 3],
     },
@@ -76,6 +94,9 @@ pub fn build(call: &Call) -> Result<Light, BuildError> {
     if call.get("falloff").is_some() && at.is_none() {
         return Err(error("falloff", "only a point light has `falloff`", "give the point light `at:`"));
     }
+    if call.get("size").is_some() || call.get("look_at").is_some() {
+        return area(call, color);
+    }
     match (direction, at) {
         (Some(_), Some(_)) => {
             Err(error("at", "a light has either `direction` or `at`", "make two lights of it"))
@@ -86,9 +107,42 @@ pub fn build(call: &Call) -> Result<Light, BuildError> {
         (None, None) => Err(error(
             "",
             "nothing says what light this is",
-            "give `direction:` for a sun, `at:` for a point light, or `color:` for a sky",
+            "give `direction:` for a sun, `at:` for a point light, with `size:` and `look_at:` for an area light, or `color:` for a sky",
         )),
     }
+}
+
+fn area(call: &Call, color: [f32; 3]) -> Result<Light, BuildError> {
+    for other in ["direction", "softness", "falloff"] {
+        if call.get(other).is_some() {
+            let help = "an area light has `at:`, `size:` and `look_at:`";
+            return Err(error(other, format!("an area light has no `{other}`"), help));
+        }
+    }
+    let (Some(at), Some([w, h]), Some(look_at)) = (call.vec3("at"), call.vec2("size"), call.vec3("look_at"))
+    else {
+        return Err(error(
+            "",
+            "an area light is not whole",
+            "it has `at:`, `size: [width, height]` and `look_at:`",
+        ));
+    };
+    if !(0.0 < w && 0.0 < h && w.is_finite() && h.is_finite()) {
+        return Err(error(
+            "size",
+            "`size` must be above zero",
+            "size: [2, 1]; without `size:` and `look_at:` it is a point light",
+        ));
+    }
+    let facing = (look_at - at).normalize_or_zero();
+    if facing == DVec3::ZERO {
+        return Err(error("look_at", "`look_at` is where the light is", "move one of them"));
+    }
+    // Its width lies level; of one that faces straight up or down along x.
+    let right = facing.cross(DVec3::Z);
+    let right = if right.length() <= tolerance::cleanup(1.0) { DVec3::X } else { right.normalize() };
+    let up = right.cross(facing).normalize();
+    Ok(Light::Area { at, half: [0.5 * w * right, 0.5 * h * up], facing, color })
 }
 
 fn sun(call: &Call, direction: DVec3, color: [f32; 3]) -> Result<Light, BuildError> {
