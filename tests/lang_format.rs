@@ -28,6 +28,8 @@ fn texts() -> Vec<String> {
     all.push("let a = /* one */ 3 // two\n\n\n\n// three\n/* four\n   five */ let b = [ // six\n1, // seven\n\n2\n// eight\n]\n\n".into());
     all.push("/* a */let a=1/* b */+/* c */2//d\nlet b=-a\nlet c=a - -b\nlet d=[a,-b,!(a<b)]".into());
     // Found by fuzzing: a bracket that ends a comment opens nothing.
+    // What begins a comment does not end it.
+    all.push("draw sphere(r: 1) /*/ a ( b */\n/*/*/ draw box(size: 1)\n".into());
     all.push("let a = 1 // f(\n\n\n// b\nlet b = 2 /* [ */\n\n// c {\n\n".into());
     let doubled: Vec<String> = all.iter().map(|text| text.replace('\n', "\r\n")).collect();
     let spread: Vec<String> =

@@ -61,7 +61,9 @@ impl Writer<'_> {
             let line = found.starts_with("//");
             let length = match line {
                 true => found.find('\n').unwrap_or(found.len()),
-                false => found.find("*/").map_or(found.len(), |end| end + 2),
+                false => {
+                    found.get(2..).and_then(|inside| inside.find("*/")).map_or(found.len(), |end| end + 4)
+                }
             };
             self.breaks(lines, false);
             self.comment(found[..length].trim_end(), begins_item);
