@@ -281,6 +281,19 @@ fn diagnostics_bring_their_edits_as_quick_fixes() {
         edit["range"],
         json!({ "start": { "line": 0, "character": 16 }, "end": { "line": 0, "character": 21 } })
     );
+    // A client that keeps no diagnostics is told of what the server found at the cursor.
+    let at = |line: u32, character: u32| {
+        let cursor = json!({ "line": line, "character": character });
+        json!({
+            "textDocument": { "uri": uri },
+            "range": { "start": cursor, "end": cursor },
+            "context": { "diagnostics": [] },
+        })
+    };
+    let found = client.ask("textDocument/codeAction", at(0, 18))["result"].clone();
+    assert_eq!(found[0]["edit"], actions[0]["edit"], "{found}");
+    let elsewhere = client.ask("textDocument/codeAction", at(1, 2))["result"].clone();
+    assert_eq!(elsewhere, json!([]));
 }
 
 #[test]

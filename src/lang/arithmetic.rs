@@ -146,8 +146,20 @@ fn refuse(op: InfixOp, a: &Located, b: &Located, sign: Span) -> Diagnostic {
     match op {
         InfixOp::Or | InfixOp::And => error.help("conditions are wanted; shapes are combined by `|` and `&`"),
         InfixOp::Equal | InfixOp::Unequal if shapes => error.help("comparing shapes is not supported yet"),
-        InfixOp::Add | InfixOp::Subtract if left == "an angle" || right == "an angle" => {
+        InfixOp::Add
+        | InfixOp::Subtract
+        | InfixOp::Equal
+        | InfixOp::Unequal
+        | InfixOp::AtMost
+        | InfixOp::AtLeast
+        | InfixOp::Below
+        | InfixOp::Above
+            if left == "an angle" || right == "an angle" =>
+        {
             error.help("an angle has a unit: `30deg`")
+        }
+        InfixOp::Equal | InfixOp::Unequal => {
+            error.help("values of one type are compared: a number is written without quotes")
         }
         _ if left == "a vector" && right == "a vector" => error.help("vectors of one size are wanted"),
         _ => error.help("numbers or vectors are wanted"),

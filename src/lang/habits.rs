@@ -152,7 +152,12 @@ const HABITS: &[(&[&str], Place, &str)] = &[
         "a camera has `eye:`, a light `at:` or `direction:`",
     ),
     (&["target", "lookat", "look", "to", "aim"], Argument, "write `look_at: [x, y, z]`"),
-    (&["angle", "fovy"], Argument, "write the vertical angle: `fov: 30deg`"),
+    (
+        &["angle"],
+        Argument,
+        "a camera has a vertical angle, `fov: 30deg`, and a sun has a diameter, `softness: 2deg`",
+    ),
+    (&["fovy"], Argument, "write the vertical angle: `fov: 30deg`"),
     (&["width", "resolution"], Argument, "write `size: [width, height]`"),
     (&["spp", "antialias", "quality"], Argument, "write `samples: 16`"),
     (&["power", "brightness", "energy"], Argument, "write `intensity: 2`"),

@@ -27,15 +27,18 @@ pub fn number(text: &str, at: Span) -> Result<ExprKind, Box<Diagnostic>> {
         return Ok(ExprKind::Number(value, Some(unit)));
     }
     let listed = units::names().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(" ");
-    let help = match nearest(name, units::names()) {
+    let spoken = units::spoken(name);
+    let help = match spoken.or_else(|| nearest(name, units::names())) {
         _ if name == "pi" || name == "tau" || keywords::is_keyword(name) => spaced(digits, name),
+        Some(known) if spoken.is_some() => format!("write `{digits}{known}`"),
         Some(known) => format!("did you mean `{digits}{known}`?"),
         None if name.starts_with('_') => "digits stand together: `1000`".to_owned(),
         None => format!("the units are {listed}; for a product write `{digits} * {name}`"),
     };
-    let product = matches!(name, "pi" | "tau").then(|| format!("{digits} * {name}"));
+    let edit = matches!(name, "pi" | "tau").then(|| format!("{digits} * {name}"));
+    let edit = edit.or_else(|| spoken.map(|unit| format!("{digits}{unit}")));
     Err(Diagnostic::error("E0105", format!("`{name}` is not a unit"))
-        .fix_with(at, product.as_deref())
+        .fix_with(at, edit.as_deref())
         .at(Span { start: at.start + digits.len() as u32, ..at }, "not a unit")
         .help(help)
         .into())

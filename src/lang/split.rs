@@ -266,15 +266,22 @@ fn stranger(text: &str, token: &Token, at: Span) -> Diagnostic {
                 "$" => "surfaces are exact: there is no `$fn`, and no number of facets to set",
                 ";" => "items and expressions need nothing between them: remove it",
                 "'" => "strings stand in double quotes",
+                "µ" | "μ" => "micrometres are written `um`",
+                "°" => "an angle has a unit of letters: `30deg`",
                 "?" => "a choice is written `if a { b } else { c }`",
                 _ if found.chars().all(char::is_alphabetic) => {
                     "names are made of ASCII letters, digits and `_`"
                 }
                 _ => "outside of strings and comments only ASCII letters, digits and signs are used",
             };
+            let edit = match found {
+                ";" => Some(""),
+                "°" => Some("deg"),
+                _ => None,
+            };
             Diagnostic::error("E0103", format!("`{}` has no meaning here", found.escape_debug()))
                 .at(at, "unexpected character")
-                .fix_with(at, (found == ";").then_some(""))
+                .fix_with(at, edit)
                 .help(help)
         }
     }

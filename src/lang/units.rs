@@ -16,6 +16,25 @@ pub fn find(name: &str) -> Option<Unit> {
     length.or_else(|| ANGLES.iter().find(|(n, _)| *n == name).map(|(_, a)| Unit::Angle(*a)))
 }
 
+/// What units are called where they are not abbreviated.
+const SPOKEN: [(&str, &[&str]); 10] = [
+    ("um", &["micron", "microns", "micrometer", "micrometers", "micrometre", "micrometres"]),
+    ("mm", &["millimeter", "millimeters", "millimetre", "millimetres"]),
+    ("cm", &["centimeter", "centimeters", "centimetre", "centimetres"]),
+    ("m", &["meter", "meters", "metre", "metres"]),
+    ("km", &["kilometer", "kilometers", "kilometre", "kilometres"]),
+    ("in", &["inch", "inches"]),
+    ("ft", &["foot", "feet"]),
+    ("deg", &["degree", "degrees"]),
+    ("rad", &["radian", "radians"]),
+    ("turn", &["turns", "rev", "revolution", "revolutions"]),
+];
+
+/// The unit that is called so in other places.
+pub fn spoken(name: &str) -> Option<&'static str> {
+    SPOKEN.iter().find(|(_, long)| long.contains(&name)).map(|(unit, _)| *unit)
+}
+
 /// The names of all units.
 pub fn names() -> impl Iterator<Item = &'static str> {
     LENGTHS.iter().map(|(n, _)| *n).chain(ANGLES.iter().map(|(n, _)| *n))

@@ -1,10 +1,12 @@
 //! Quick fixes: the edits that diagnostics bring. Each travels with its diagnostic, so that it is of the text that the
 //! diagnostic is of.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
-use lsp_types::{CodeAction, CodeActionKind, CodeActionParams, TextEdit, Uri, WorkspaceEdit};
+use lsp_types::{CodeAction, CodeActionKind, CodeActionParams, Range, TextEdit, Uri, WorkspaceEdit};
 use serde::{Deserialize, Serialize};
+
+use super::diagnostics::Findings;
 
 /// What a diagnostic keeps in its `data`.
 #[derive(Serialize, Deserialize)]
@@ -16,9 +18,16 @@ pub struct Mending {
     pub edit: TextEdit,
 }
 
-/// The actions for the diagnostics that a client has at a place.
-pub fn actions(params: CodeActionParams) -> Vec<CodeAction> {
-    let diagnostics = params.context.diagnostics.into_iter();
+/// The actions for the diagnostics that a client has at a place; of a client that names none, for what was found there.
+pub fn actions(params: CodeActionParams, findings: &BTreeMap<String, Findings>) -> Vec<CodeAction> {
+    let mut named = params.context.diagnostics;
+    if named.is_empty() {
+        let found = findings.values().flat_map(|found| &found.told);
+        let here = found.filter(|(uri, _)| *uri == params.text_document.uri).flat_map(|(_, list)| list);
+        named.extend(here.filter(|d| touch(d.range, params.range)).cloned());
+        named.dedup();
+    }
+    let diagnostics = named.into_iter();
     let action = |diagnostic: lsp_types::Diagnostic| {
         let Mending { uri, edit } = serde_json::from_value(diagnostic.data.clone()?).ok()?;
         let title = match edit.new_text.trim() {
@@ -38,4 +47,9 @@ pub fn actions(params: CodeActionParams) -> Vec<CodeAction> {
         })
     };
     diagnostics.filter_map(action).collect()
+}
+
+/// Whether two stretches have a place in common; a cursor is a stretch without length.
+fn touch(a: Range, b: Range) -> bool {
+    a.start <= b.end && b.start <= a.end
 }

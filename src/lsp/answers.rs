@@ -1,5 +1,7 @@
 //! Requests about documents, and their answers: positions become bytes here, and bytes positions.
 
+use std::collections::BTreeMap;
+
 use lsp_server::{ErrorCode, Request};
 use lsp_types::request::{
     CodeActionRequest, Completion, DocumentSymbolRequest, Formatting, GotoDefinition, HoverRequest,
@@ -17,6 +19,7 @@ use super::Access;
 use super::actions::actions;
 use super::completion::complete;
 use super::definition::{Place, definition};
+use super::diagnostics::Findings;
 use super::documents::{Document, Documents};
 use super::hover::hover;
 use super::positions::{Encoding, Lines};
@@ -37,6 +40,8 @@ pub struct Desk<'s> {
     pub documents: &'s Documents,
     /// What may be read.
     pub access: &'s Access,
+    /// What was found about them as they stand.
+    pub findings: &'s BTreeMap<String, Findings>,
     /// What columns count.
     pub encoding: Encoding,
 }
@@ -50,7 +55,7 @@ impl<'s> Desk<'s> {
             Completion::METHOD => written(self.completion(params(given)?)?),
             GotoDefinition::METHOD => written(self.definition(params(given)?)?),
             DocumentSymbolRequest::METHOD => written(self.symbols(params(given)?)?),
-            CodeActionRequest::METHOD => written(actions(params(given)?)),
+            CodeActionRequest::METHOD => written(actions(params(given)?, self.findings)),
             Formatting::METHOD => written(self.formatting(params(given)?)?),
             _ => Err((ErrorCode::MethodNotFound, format!("`{method}` is not known"))),
         }

@@ -8,7 +8,7 @@ use lsp_types::notification::{
     DidChangeTextDocument, DidChangeWatchedFiles, DidCloseTextDocument, DidOpenTextDocument,
     DidSaveTextDocument, Exit, Notification as _, PublishDiagnostics,
 };
-use lsp_types::request::{Initialize, Request as _, Shutdown};
+use lsp_types::request::{CodeActionRequest, Initialize, Request as _, Shutdown};
 use lsp_types::{
     CodeActionProviderCapability, CompletionOptions, Diagnostic, DidChangeTextDocumentParams,
     DidCloseTextDocumentParams, DidOpenTextDocumentParams, HoverProviderCapability, InitializeParams,
@@ -170,8 +170,12 @@ impl Server {
                 Err((ErrorCode::InvalidRequest, "`initialize` was said before".to_owned()))
             }
             (Stage::Running, _) => {
-                let Server { words, documents, access, client, .. } = self;
-                Desk { words, documents, access, encoding: client.encoding }.answer(request)
+                // What was found in an older text has edits for that text.
+                while !self.is_settled() && request.method == CodeActionRequest::METHOD {
+                    self.diagnose();
+                }
+                let Server { words, documents, access, findings, client, .. } = self;
+                Desk { words, documents, access, findings, encoding: client.encoding }.answer(request)
             }
             _ => Err((ErrorCode::InvalidRequest, "the server was shut down".to_owned())),
         }

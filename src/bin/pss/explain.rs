@@ -14,11 +14,13 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
         let lines: Vec<String> = words.iter().map(|w| format!("{}\n    {}\n", w.call, w.doc)).collect();
         return print(lines.concat().as_bytes()).map(drop);
     };
+    // Methods are called with a point before them, and messages name them so.
+    let word = word.strip_prefix('.').unwrap_or(word);
     let found: Vec<String> = words.iter().filter(|w| w.is(word)).map(reference::Word::page).collect();
     if !found.is_empty() {
         return print(found.join("\n").as_bytes()).map(drop);
     }
-    if let Some(code) = codes::CODES.iter().find(|c| c.code.eq_ignore_ascii_case(word)) {
+    if let Some(code) = codes::all().find(|c| c.code.eq_ignore_ascii_case(word)) {
         return print(code.page().as_bytes()).map(drop);
     }
     let instead = reference::instead(word);
@@ -27,7 +29,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
             instead.iter().map(|help| format!("{word} is not of this language: {help}\n")).collect();
         return print(lines.concat().as_bytes()).map(drop);
     }
-    let known = words.iter().flat_map(|w| w.name.split(' ')).chain(codes::CODES.iter().map(|c| c.code));
+    let known = words.iter().flat_map(|w| w.name.split(' ')).chain(codes::all().map(|c| c.code));
     let error = Diagnostic::error("E0001", format!("`{word}` is no word of the language and no code"))
         .fault(Fault::Usage);
     Err(Failure::from(match nearest(word, known) {

@@ -1,53 +1,14 @@
-//! The codes of messages: what each tells, how it comes about, and a scene that shows it beside its repair.
+//! The codes of errors.
 
-/// What a code means.
-#[derive(Clone, Copy, Debug)]
-pub struct Code {
-    /// The code.
-    pub code: &'static str,
-    /// What it tells, one sentence.
-    pub told: &'static str,
-    /// How it comes about, and what helps.
-    pub why: &'static str,
-    /// A scene that is told so; empty where it takes more than scenes: a full disk, a fault. First lines `$ pss ...` are
-    /// commands of which the last tells (else `pss check scene.pss`), and a line `--- NAME` begins another file.
-    pub bad: &'static str,
-    /// The same scene, repaired.
-    pub good: &'static str,
-}
+use super::{Code, NONE, code};
 
-impl Code {
-    /// All that is known of it, as text.
-    pub fn page(&self) -> String {
-        let indented =
-            |scene: &str| scene.lines().map(|line| format!("        {line}\n")).collect::<String>();
-        let mut out = format!("{}: {}\n\n    {}\n", self.code, self.told, self.why);
-        if !self.bad.is_empty() {
-            out += &format!("\n    Told of\n\n{}\n    Not of\n\n{}", indented(self.bad), indented(self.good));
-        }
-        out
-    }
-}
-
-const fn code(
-    code: &'static str,
-    told: &'static str,
-    why: &'static str,
-    [bad, good]: [&'static str; 2],
-) -> Code {
-    Code { code, told, why, bad, good }
-}
-
-/// No scene shows it.
-const NONE: [&str; 2] = ["", ""];
-
-/// All codes, in their order.
+/// In their order.
 pub const CODES: &[Code] = &[
     code(
         "E0001",
         "The command line is wrong.",
         "`pss help` and `pss COMMAND --help` list what is taken.",
-        NONE,
+        ["$ pss explain shpere", "$ pss explain sphere"],
     ),
     code(
         "E0101",
@@ -180,8 +141,8 @@ pub const CODES: &[Code] = &[
         "A material takes its colour from a scan that has none.",
         "Take a scan with colours, or a material of one colour: `matte(#b8683c)`.",
         [
-            "material own(kind: \"points\")\ndraw points(\"scan.ply\").with(own)\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n2 0 0\n2 1 0\n2 2 0",
-            "material own(color: #b8683c)\ndraw points(\"scan.ply\").with(own)\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n2 0 0\n2 1 0\n2 2 0",
+            scan!("material own(kind: \"points\")\ndraw points(\"scan.ply\").with(own)"),
+            scan!("material own(color: #b8683c)\ndraw points(\"scan.ply\").with(own)"),
         ],
     ),
     code(
@@ -365,7 +326,7 @@ pub const CODES: &[Code] = &[
         "The message says what it lacks.",
         [
             "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nend_header\n1 2\n3 4",
-            "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n2 0 0\n2 1 0\n2 2 0",
+            scan!("draw points(\"scan.ply\")"),
         ],
     ),
     code(
@@ -378,10 +339,7 @@ pub const CODES: &[Code] = &[
         "E0607",
         "An output is one of the inputs.",
         "Write the picture under another name.",
-        [
-            "$ pss cloud convert scan.ply scan.ply\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n2 0 0\n2 1 0\n2 2 0",
-            "$ pss cloud convert scan.ply clean.ply\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n2 0 0\n2 1 0\n2 2 0",
-        ],
+        [scan!("$ pss cloud convert scan.ply scan.ply"), scan!("$ pss cloud convert scan.ply clean.ply")],
     ),
     code(
         "E0608",
@@ -479,140 +437,5 @@ pub const CODES: &[Code] = &[
         "The program is wrong.",
         "This is a fault of pss, not of the scene; please report it.",
         NONE,
-    ),
-    code(
-        "W0101",
-        "A size is zero: the shape is nothing.",
-        "Give it a size, or leave it out.",
-        ["draw sphere(r: 0)", "draw sphere(r: 1)"],
-    ),
-    code(
-        "W0102",
-        "A file was read, but not all of it is as it should be.",
-        "The message says what was dropped or mended.",
-        [
-            "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 10\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n2 0 0\n2 1 0\n2 2 0\nnan 0 0",
-            "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n2 0 0\n2 1 0\n2 2 0",
-        ],
-    ),
-    code(
-        "W0103",
-        "The points of a scan are too coarse for their spacing, so far from the origin.",
-        "Export the cloud in double precision, or nearer to the origin.",
-        [
-            "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nend_header\n10000000 10000000 0\n10000000 10000002 0\n10000000 10000004 0\n10000002 10000000 0\n10000002 10000002 0\n10000002 10000004 0\n10000004 10000000 0\n10000004 10000002 0\n10000004 10000004 0",
-            "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty double x\nproperty double y\nproperty double z\nend_header\n10000000.3 10000000.3 0\n10000000.3 10000002.3 0\n10000000.3 10000004.3 0\n10000002.3 10000000.3 0\n10000002.3 10000002.3 0\n10000002.3 10000004.3 0\n10000004.3 10000000.3 0\n10000004.3 10000002.3 0\n10000004.3 10000004.3 0",
-        ],
-    ),
-    code(
-        "W0104",
-        "A scan is noisier than its surface smooths.",
-        "Raise `smoothing:`.",
-        [
-            "draw points(sphere(r: 1), samples: 400, noise: 0.15)",
-            "draw points(sphere(r: 1), samples: 400, noise: 0.08)",
-        ],
-    ),
-    code(
-        "W0105",
-        "Walls of a scan are thinner than its surface resolves.",
-        "Lower `smoothing:`, or scan more densely.",
-        ["draw points(sphere(r: [1, 1, 0.08]), samples: 2000)", "draw points(sphere(r: 1), samples: 2000)"],
-    ),
-    code(
-        "W0106",
-        "Normals of a scan contradict each other.",
-        "Try `normals: \"estimate\"`.",
-        [
-            "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n0 0 0 0 0 -1\n0 1 0 0 0 1\n0 2 0 0 0 -1\n1 0 0 0 0 1\n1 1 0 0 0 -1\n1 2 0 0 0 1\n2 0 0 0 0 -1\n2 1 0 0 0 1\n2 2 0 0 0 -1",
-            "draw points(\"scan.ply\")\n--- scan.ply\nply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n0 0 0 0 0 1\n0 1 0 0 0 1\n0 2 0 0 0 1\n1 0 0 0 0 1\n1 1 0 0 0 1\n1 2 0 0 0 1\n2 0 0 0 0 1\n2 1 0 0 0 1\n2 2 0 0 0 1",
-        ],
-    ),
-    code(
-        "W0107",
-        "The width of a scan's surface holds very many samples: rays take long.",
-        "Lower `smoothing:` or `h:`, or leave out what is sparse beside dense samples.",
-        ["draw points(sphere(r: 1), samples: 1500, h: 0.9)", "draw points(sphere(r: 1), samples: 1500)"],
-    ),
-    code(
-        "W0121",
-        "Faces of two shapes coincide.",
-        "Nothing is wrong with that; if a cut shall go through, let the cutter stand out of what it cuts.",
-        [
-            "draw box([0, 0, 0], [4, 4, 2]) - cylinder(r: 1, from: [2, 2, 0], to: [2, 2, 2])",
-            "draw box([0, 0, 0], [4, 4, 2]) - cylinder(r: 1, from: [2, 2, -1], to: [2, 2, 3])",
-        ],
-    ),
-    code(
-        "W0122",
-        "A cutter cuts nothing.",
-        "Move it to where it meets what it shall cut, or leave it out.",
-        [
-            "draw sphere(r: 1) - sphere(r: 1, at: [5, 0, 0])",
-            "draw sphere(r: 1) - sphere(r: 1, at: [1, 0, 0])",
-        ],
-    ),
-    code(
-        "W0123",
-        "What is drawn is nothing.",
-        "Do its parts meet? Does a cutter take all?",
-        [
-            "draw sphere(r: 1) & sphere(r: 1, at: [5, 0, 0])",
-            "draw sphere(r: 1) & sphere(r: 1, at: [1, 0, 0])",
-        ],
-    ),
-    code(
-        "W0124",
-        "The base of a difference lies wholly inside its cutters.",
-        "Make the cutter smaller; what both hold is written `a & b`.",
-        ["draw box(size: 1) - sphere(r: 2)", "draw box(size: 1) - sphere(r: 0.6)"],
-    ),
-    code(
-        "W0125",
-        "What is left, or open, between shapes is too thin to be meant.",
-        "Let the one stand out of the other, or reach into it.",
-        [
-            "draw box([0, 0, 0], [4, 4, 2]) - box([1, 1, 0.000000001], [3, 3, 3])",
-            "draw box([0, 0, 0], [4, 4, 2]) - box([1, 1, -1], [3, 3, 3])",
-        ],
-    ),
-    code(
-        "W0126",
-        "The insides of two solids drawn overlap.",
-        "Move one of them, or draw them as one: `draw a | b`.",
-        [
-            "draw sphere(r: 1)\ndraw sphere(r: 1, at: [1, 0, 0])",
-            "draw sphere(r: 1) | sphere(r: 1, at: [1, 0, 0])",
-        ],
-    ),
-    code(
-        "W0127",
-        "A shape is nothing: no line meets it.",
-        "Look at its sizes; a formula may hold nowhere in its bounds.",
-        [
-            "draw sphere(r: 1) | implicit(x**2 < -1, inside: box(size: 4))",
-            "draw sphere(r: 1) | implicit(x**2 < 1, inside: box(size: 4))",
-        ],
-    ),
-    code(
-        "W0201",
-        "A name hides what the language calls so.",
-        "Take another name.",
-        ["let sphere = 3", "let ball = 3"],
-    ),
-    code(
-        "W0202",
-        "A number is so small that it is read as 0.",
-        "Choose smaller units.",
-        ["let a = 1e-400", "let a = 1e-300"],
-    ),
-    code(
-        "W0203",
-        "The scene draws nothing: its picture is the background.",
-        "Draw something: `draw sphere(r: 1)`.",
-        [
-            "$ pss render scene.pss --size 8x6\nlet ball = sphere(r: 1)",
-            "$ pss render scene.pss --size 8x6\nlet ball = sphere(r: 1)\ndraw ball",
-        ],
     ),
 ];
