@@ -1,7 +1,7 @@
 //! Pixels in memory: linear colour and, where asked for, layers of facts beside it. How they are filled and
 //! how they become files is left to [`crate::render`] and [`crate::output`].
 
-/// A layer of facts about what the ray through each pixel's centre sees; never averaged.
+/// A layer of facts, never averaged: about what the ray through each pixel's centre sees, or about the pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Aov {
     /// Distance from the eye, world length; infinite where nothing is.
@@ -12,34 +12,77 @@ pub enum Aov {
     Position,
     /// Share of light the surface sends on, linear; zero where nothing is.
     Albedo,
+    /// The number of the solid drawn that the face belongs to, from 1 in the order written, sheets after solids; zero where
+    /// nothing is.
+    Owner,
     /// One more than the index of the leaf that owns the face; zero where nothing is.
     Leaf,
+    /// How many spans of solids the ray goes through.
+    Layers,
+    /// How long they are together, world length.
+    Thickness,
+    /// How long the first of them is, world length; zero where there is none.
+    Wall,
+    /// Groups of several crossings at one place, along the whole ray.
+    Ties,
+    /// Gaps whose ends disagreed and were mended by a cap, along the whole ray.
+    Parity,
+    /// Solves of plane and polynomial that all rays of the pixel asked for, those left out that build what other rays use as well.
+    Projections,
+    /// Those, and questions to leaves.
+    Cost,
+    /// The squared standard error of the pixel's brightness (Rec. 709 luminance), as its samples differ.
+    Variance,
+    /// How many samples the pixel has.
+    Samples,
 }
 
+/// What there is to know of a layer: its word, and the names of its channels in a file.
+type About = (Aov, &'static str, &'static [&'static str]);
+
+/// All layers, in the order they are kept.
+const ABOUT: [About; Aov::COUNT] = [
+    (Aov::Depth, "depth", &["depth.Z"]),
+    (Aov::Normal, "normal", &["N.X", "N.Y", "N.Z"]),
+    (Aov::Position, "position", &["P.X", "P.Y", "P.Z"]),
+    (Aov::Albedo, "albedo", &["albedo.R", "albedo.G", "albedo.B"]),
+    (Aov::Owner, "owner", &["owner.id"]),
+    (Aov::Leaf, "leaf", &["leaf.id"]),
+    (Aov::Layers, "layers", &["layers"]),
+    (Aov::Thickness, "thickness", &["thickness"]),
+    (Aov::Wall, "wall", &["wall"]),
+    (Aov::Ties, "ties", &["ties"]),
+    (Aov::Parity, "parity_repairs", &["parity_repairs"]),
+    (Aov::Projections, "projections", &["projections"]),
+    (Aov::Cost, "cost", &["cost"]),
+    (Aov::Variance, "variance", &["variance"]),
+    (Aov::Samples, "samples", &["samples"]),
+];
+
 impl Aov {
+    const COUNT: usize = 15;
+
     /// All layers, in the order they are kept.
-    pub const ALL: [Aov; 5] = [Aov::Depth, Aov::Normal, Aov::Position, Aov::Albedo, Aov::Leaf];
+    pub const ALL: [Aov; Aov::COUNT] = {
+        let mut all = [Aov::Depth; Aov::COUNT];
+        let mut i = 0;
+        while i < Aov::COUNT {
+            // Their order is that of the variants.
+            assert!(ABOUT[i].0 as usize == i);
+            all[i] = ABOUT[i].0;
+            i += 1;
+        }
+        all
+    };
 
     /// The word in `aov: [...]`.
     pub const fn word(self) -> &'static str {
-        match self {
-            Aov::Depth => "depth",
-            Aov::Normal => "normal",
-            Aov::Position => "position",
-            Aov::Albedo => "albedo",
-            Aov::Leaf => "leaf",
-        }
+        ABOUT[self as usize].1
     }
 
     /// The names of its channels in a file.
     pub const fn channels(self) -> &'static [&'static str] {
-        match self {
-            Aov::Depth => &["depth.Z"],
-            Aov::Normal => &["N.X", "N.Y", "N.Z"],
-            Aov::Position => &["P.X", "P.Y", "P.Z"],
-            Aov::Albedo => &["albedo.R", "albedo.G", "albedo.B"],
-            Aov::Leaf => &["leaf.id"],
-        }
+        ABOUT[self as usize].2
     }
 
     /// The value of every channel where nothing is.

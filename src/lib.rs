@@ -43,5 +43,6 @@ pub mod render;
 pub mod report;
 pub mod scene;
 pub mod shot;
+pub mod sky;
 pub mod solid;
 pub mod source;

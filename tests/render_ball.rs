@@ -80,13 +80,7 @@ fn try_render(
     settings: &Settings,
 ) -> Result<Rendered, RenderError> {
     let camera = front();
-    let view = View {
-        camera: &camera,
-        lights,
-        materials: &[Material::Matte { color: CLAY }],
-        ghosts: None,
-        settings,
-    };
+    let view = View { camera: &camera, lights, materials: &[Material::matte(CLAY)], ghosts: None, settings };
     render_scenery(scenery, &view, &Progress::default())
 }
 
@@ -143,7 +137,7 @@ fn a_convex_body_under_a_sky_alone_shows_its_colour_times_the_skys() {
 fn a_white_body_under_a_white_sky_cannot_be_seen() {
     let camera = front();
     let settings = settings(4);
-    let materials = [Material::Matte { color: [1.0; 3] }];
+    let materials = [Material::matte([1.0; 3])];
     let lights = [Light::Sky { color: [1.0; 3] }];
     let view =
         View { camera: &camera, lights: &lights, materials: &materials, ghosts: None, settings: &settings };

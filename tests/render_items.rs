@@ -122,12 +122,13 @@ fn cameras_that_see_nothing_are_errors_that_name_the_argument() {
 fn what_is_given_decides_what_light_it_is() {
     let direction = ("direction", vector(0.0, 0.0, -2.0));
     let white = ("color", Value::Color([1.0; 3]));
-    let sun = light::build(&call("light", &[direction.clone(), ("softness", Value::Angle(0.2))])).unwrap();
+    let sun =
+        light::build(&call("light", &[direction.clone(), ("softness", Value::Angle(0.2))]), None).unwrap();
     assert_eq!(sun, Light::Sun { toward: DVec3::Z, half_angle: 0.1, color: [1.0; 3] });
-    let point = light::build(&call("light", &[("at", vector(1.0, 2.0, 3.0)), white.clone()])).unwrap();
+    let point = light::build(&call("light", &[("at", vector(1.0, 2.0, 3.0)), white.clone()]), None).unwrap();
     let at = DVec3::new(1.0, 2.0, 3.0);
     assert_eq!(point, Light::Point { at, falloff: true, color: [1.0; 3] });
-    let sky = light::build(&call("light", &[white, ("intensity", Value::Number(0.5))])).unwrap();
+    let sky = light::build(&call("light", &[white, ("intensity", Value::Number(0.5))]), None).unwrap();
     assert_eq!(sky, Light::Sky { color: [0.5; 3] });
     let wrong = [
         (vec![], ""),
@@ -140,16 +141,16 @@ fn what_is_given_decides_what_light_it_is() {
         (vec![direction, ("falloff", Value::Bool(false))], "falloff"),
     ];
     for (args, param) in wrong {
-        assert_eq!(light::build(&call("light", &args)).unwrap_err().param, param, "{args:?}");
+        assert_eq!(light::build(&call("light", &args), None).unwrap_err().param, param, "{args:?}");
     }
 }
 
 #[test]
 fn a_matte_without_colour_is_the_default_material() {
-    assert_eq!(material::build(&call("matte", &[])).unwrap(), Material::default());
+    assert_eq!(material::build(&call("matte", &[])).unwrap().paint, Material::default().paint);
     // #cc as the standard decodes it.
     let linear = ((f64::from(0xcc) / 255.0 + 0.055) / 1.055).powf(2.4) as f32;
-    assert!((Material::default().albedo(None)[0] - linear).abs() < 1e-7);
+    assert!((Material::default().albedo(DVec3::ZERO, None)[0] - linear).abs() < 1e-7);
     assert_eq!(
         material::build(&call("matte", &[("color", Value::Color([-1.0; 3]))])).unwrap_err().param,
         "color"
@@ -179,7 +180,9 @@ fn settings_out_of_range_name_the_argument() {
         ("samples", Value::Number(1e9)),
         ("seed", Value::Number(-1.0)),
         ("exposure", Value::Number(1e6)),
-        ("integrator", text("path")),
+        ("integrator", text("paths")),
+        ("error", Value::Number(-1.0)),
+        ("bounces", Value::Number(0.0)),
         ("aov", Value::Texts(vec!["dept".to_owned()])),
     ];
     for (param, value) in cases {

@@ -164,6 +164,17 @@ impl Leaf {
         self.group.as_ref().map_or_else(|| self.key(), |group| group.0.core().least_key)
     }
 
+    /// Appends the materials of it and of the leaves in it; what is taken away fills nothing.
+    pub fn materials(&self, out: &mut Vec<u32>) {
+        if self.cutter {
+            return;
+        }
+        out.extend(self.material);
+        if let Some(group) = &self.group {
+            group.0.leaves().iter().for_each(|leaf| leaf.materials(out));
+        }
+    }
+
     /// How many leaves it is, those in it counted.
     pub(super) fn count(&self) -> u32 {
         self.group.as_ref().map_or(1, |group| group.0.core().count)

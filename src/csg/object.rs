@@ -179,6 +179,16 @@ impl Object {
         self.core.tree.leaves()
     }
 
+    /// The leaf that a boundary's index is, or is in: an index into [`Object::leaves`].
+    pub fn holder(&self, index: u32) -> u32 {
+        self.core.holder(index)
+    }
+
+    /// A box outside of which nothing is inside; unbounded where there is none.
+    pub fn bounds(&self) -> Aabb {
+        self.core.bounds
+    }
+
     pub(super) fn core(&self) -> &Core {
         &self.core
     }

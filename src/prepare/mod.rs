@@ -7,6 +7,7 @@
 mod assets;
 mod bounding;
 mod build;
+mod clear;
 mod edits;
 mod equal;
 mod extent;
@@ -30,7 +31,7 @@ use crate::csg::{Expr, Object};
 use crate::diag::{Diagnostic, Fault};
 use crate::geom::Aabb;
 use crate::scene::{BuildError, Call, Catalog, Draw, Scene};
-use crate::shot::settings::{self, Overrides};
+use crate::shot::settings::{self, Integrator, Overrides};
 use crate::shot::{Camera, Light, Material, Settings, Shot, World, camera, light, material};
 use crate::solid::point_set::Solidity;
 use crate::solid::{Counts, table};
@@ -118,11 +119,11 @@ pub fn prepare(scene: &Scene, options: &Options) -> Result<Prepared, Vec<Diagnos
     let mut errors = Vec::new();
     let settings = keep(&mut errors, settings_of(scene, options));
     let materials = keep(&mut errors, materials_of(scene));
-    let lights = keep(&mut errors, lights_of(scene));
     let chosen = keep(&mut errors, camera_of(scene, options.camera.as_deref()));
     let known = materials.as_deref().unwrap_or_default();
     let lines = settings.as_ref().map_or(0, Settings::lines);
     let mut builder = Builder::new(options, known, lines);
+    let lights = keep(&mut errors, lights_of(scene, &mut builder));
     let bare = known.len() as u32;
     let mut built = |draws: &[Draw]| {
         let built = world(draws, &mut builder, options, bare);
@@ -131,11 +132,19 @@ pub fn prepare(scene: &Scene, options: &Options) -> Result<Prepared, Vec<Diagnos
     let world = built(&scene.draws);
     let shown = if options.ghosts { &scene.ghosts[..] } else { &[] };
     let ghosts = if shown.is_empty() { Some(None) } else { built(shown).map(|(ghosts, _)| Some(ghosts)) };
-    let (Some(settings), Some(materials), Some(lights), Some(chosen), Some((world, outline)), Some(ghosts)) =
-        (settings, materials.clone(), lights, chosen, world, ghosts)
+    let (
+        Some(settings),
+        Some(materials),
+        Some(lights),
+        Some(chosen),
+        Some((world, mut outline)),
+        Some(ghosts),
+    ) = (settings, materials.clone(), lights, chosen, world, ghosts)
     else {
         return Err(errors);
     };
+    let lit = matches!(settings.integrator, Integrator::Direct | Integrator::Path);
+    let world = if lit { clear::with_clear(world, &mut outline, &materials) } else { world };
     let scans = builder.reports();
     let Builder { warnings, loading, counts, .. } = builder;
     let camera = chosen.unwrap_or_else(|| Camera::fit(world.bounds()));
@@ -168,9 +177,12 @@ fn materials_of(scene: &Scene) -> Result<Vec<Material>, Diagnostic> {
     scene.materials.iter().map(|call| material::build(call).map_err(|e| complaint(call, e))).collect()
 }
 
-fn lights_of(scene: &Scene) -> Result<Vec<Light>, Diagnostic> {
-    let lights = scene.lights.iter().map(|named| &named.call);
-    lights.map(|call| light::build(call).map_err(|e| complaint(call, e))).collect()
+fn lights_of(scene: &Scene, builder: &mut Builder) -> Result<Vec<Light>, Diagnostic> {
+    let one = |call: &Call| {
+        let map = builder.environment(call)?;
+        light::build(call, map).map_err(|e| complaint(call, e))
+    };
+    scene.lights.iter().map(|named| &named.call).map(one).collect()
 }
 
 /// The camera asked for, or the first; `None` where the scene has none.
@@ -231,7 +243,8 @@ fn world(
     // What turned out to stand once is not shared.
     drop(repeats);
     let mut whole = Expr::Or(solids);
-    let world = World::new(Object::new(leaves, &whole), sheets, bounds, bare);
+    let draws = places.iter().map(|(_, leaves, _)| leaves.start).collect();
+    let world = World::new(Object::new(leaves, &whole), sheets, bounds, bare).with_draws(draws);
     if let Expr::Or(solids) = &mut whole {
         let part = |(expr, (at, leaves, bounds))| Part { at, expr, leaves, bounds };
         outline.parts = solids.drain(..).zip(places).map(part).collect();

@@ -125,7 +125,7 @@ fn crossings(object: &Object, ray: &Ray, materials: &[Material], scratch: &mut S
     let color = |b: &Boundary| {
         let leaf = |i: u32| object.part(i).leaf.material;
         let material = leaf(b.leaf).or_else(|| leaf(b.filler?));
-        material.and_then(|m| materials.get(m as usize)).copied().unwrap_or_default().albedo(None)
+        Material::of(materials, material.unwrap_or(u32::MAX)).albedo(ray.at(b.t), None)
     };
     ends.map(|b| Candidate { point: ray.at(b.t), normal: b.normal, color: color(&b) }).collect()
 }

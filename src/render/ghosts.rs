@@ -37,12 +37,12 @@ impl<'a> Ghosts<'a> {
         let mut color = behind;
         for hit in self.faces(scratch, ray, range).iter().rev() {
             let surface = self.world.surface(ray, hit);
-            let material = self.materials.get(surface.material as usize).copied().unwrap_or_default();
+            let material = Material::of(self.materials, surface.material);
             let own =
                 if material.reads_color() { self.world.color(hit, surface.point, scratch) } else { None };
             let facing = (surface.normal.dot(ray.dir) / ray.dir.length()).abs().min(1.0);
             let cover = (RIM + (COVER - RIM) * facing) as f32;
-            let [r, g, b] = material.albedo(own);
+            let [r, g, b] = material.albedo(surface.point, own);
             for (under, own) in color.iter_mut().zip([r, g, b, 1.0]) {
                 *under += cover * (own - *under);
             }

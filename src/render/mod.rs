@@ -2,10 +2,13 @@
 //! not depend on threads or on the order of tiles. What rays meet is left to the world, files to
 //! [`crate::output`], clocks and messages to the program.
 
+mod filter;
 mod ghosts;
 mod integrator;
 mod layers;
 mod lighting;
+mod path;
+mod pixels;
 mod sampler;
 mod scenery;
 mod tiles;

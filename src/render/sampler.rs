@@ -7,7 +7,6 @@ use crate::num::hash::mix;
 #[derive(Clone, Copy, Debug)]
 pub struct PixelSampler {
     seed: u64,
-    samples: u32,
 }
 
 /// One sample: as many pairs of numbers as one asks for.
@@ -19,17 +18,13 @@ pub struct Sample {
 
 impl PixelSampler {
     /// The sequence of a pixel of the whole picture.
-    pub fn new(seed: u64, x: u32, y: u32, samples: u32) -> PixelSampler {
-        PixelSampler { seed: mix(mix(seed) ^ (u64::from(x) << 32 | u64::from(y))), samples }
+    pub fn new(seed: u64, x: u32, y: u32) -> PixelSampler {
+        PixelSampler { seed: mix(mix(seed) ^ (u64::from(x) << 32 | u64::from(y))) }
     }
 
-    /// The samples, each with its place in the pixel, from 0 to 1. A single sample lies in the middle: it is
-    /// what `probe` sees.
-    pub fn samples(self) -> impl Iterator<Item = ([f64; 2], Sample)> {
-        (0..self.samples).map(move |index| {
-            let sample = Sample { seed: self.seed, index };
-            (if self.samples == 1 { [0.5, 0.5] } else { sample.pair(0) }, sample)
-        })
+    /// A sample by its number, from zero.
+    pub fn sample(self, index: u32) -> Sample {
+        Sample { seed: self.seed, index }
     }
 }
 
@@ -51,7 +46,8 @@ mod tests {
     #[test]
     fn sixteen_samples_hit_every_cell_of_a_four_by_four_grid() {
         let mut hit = [false; 16];
-        for ([x, y], _) in PixelSampler::new(7, 3, 4, 16).samples() {
+        for i in 0..16 {
+            let [x, y] = PixelSampler::new(7, 3, 4).sample(i).pair(0);
             hit[4 * (4.0 * y) as usize + (4.0 * x) as usize] = true;
         }
         assert_eq!(hit, [true; 16]);

@@ -3,9 +3,9 @@
 
 use glam::DVec3;
 
-use crate::csg::{Bundle, Scratch};
+use crate::csg::{Bundle, Scratch, Spans};
 use crate::geom::{Aabb, Beam, Interval, Ray};
-use crate::shot::{Hit, Surface, World};
+use crate::shot::{Hit, Meeting, Surface, World};
 
 /// Something that answers rays.
 pub trait Scenery: Sync {
@@ -33,8 +33,28 @@ pub trait Scenery: Sync {
     /// Whether anything lies in `range`.
     fn blocked(&self, ray: &Ray, range: Interval, scratch: &mut Scratch) -> bool;
 
+    /// Whether light goes through any solid.
+    fn is_clear(&self) -> bool {
+        false
+    }
+
+    /// What a ray meets first past `after`, faces between like and like left out.
+    fn meet(&self, ray: &Ray, after: f64, scratch: &mut Scratch) -> Meeting {
+        Meeting::opaque(self.first(ray, Interval::new(after, f64::INFINITY), scratch))
+    }
+
     /// The surface of a hit.
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface;
+
+    /// The spans of solids from the ray's start on.
+    fn spans(&self, _ray: &Ray, _scratch: &mut Scratch) -> Spans {
+        Spans::new()
+    }
+
+    /// The number of what is drawn that a face belongs to, from 1.
+    fn owner(&self, _hit: &Hit) -> u32 {
+        1
+    }
 
     /// The linear colour that what was hit has itself.
     fn color(&self, _hit: &Hit, _point: DVec3, _scratch: &mut Scratch) -> Option<[f32; 3]> {
@@ -67,8 +87,26 @@ impl Scenery for World {
         World::blocked(self, ray, range, scratch)
     }
 
+    fn is_clear(&self) -> bool {
+        World::is_clear(self)
+    }
+
+    fn meet(&self, ray: &Ray, after: f64, scratch: &mut Scratch) -> Meeting {
+        World::meet(self, ray, after, scratch)
+    }
+
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         World::surface(self, ray, hit)
+    }
+
+    fn spans(&self, ray: &Ray, scratch: &mut Scratch) -> Spans {
+        let mut spans = Spans::new();
+        World::spans(self, ray, Interval::AHEAD, scratch, &mut spans);
+        spans
+    }
+
+    fn owner(&self, hit: &Hit) -> u32 {
+        World::owner(self, hit)
     }
 
     fn color(&self, hit: &Hit, point: DVec3, scratch: &mut Scratch) -> Option<[f32; 3]> {
@@ -98,7 +136,8 @@ impl Rays {
 
 /// Traces rays of one tile and counts them.
 pub struct Tracer<'a, S> {
-    scenery: &'a S,
+    /// The world.
+    pub scenery: &'a S,
     /// Room and counts of the world.
     pub scratch: Scratch,
     /// Rays so far.
@@ -128,9 +167,24 @@ impl<'a, S: Scenery> Tracer<'a, S> {
     pub fn see(&mut self, ray: &Ray) -> Option<Seen> {
         self.rays.camera += 1;
         let hit = self.scenery.first_of(&self.bundle, ray, &mut self.scratch)?;
+        Some(self.seen(ray, hit))
+    }
+
+    /// A face as it is seen along a ray.
+    pub fn seen(&self, ray: &Ray, hit: Hit) -> Seen {
         let surface = self.scenery.surface(ray, &hit);
         let away = if hit.sheet { 0.0 < surface.normal.dot(ray.dir) } else { !hit.entering };
-        Some(Seen { hit, surface, normal: if away { -surface.normal } else { surface.normal } })
+        Seen { hit, surface, normal: if away { -surface.normal } else { surface.normal } }
+    }
+
+    /// Whether light goes through any solid.
+    pub fn is_clear(&self) -> bool {
+        self.scenery.is_clear()
+    }
+
+    /// What a ray meets first past `after`; faces between like and like are passed.
+    pub fn meet(&mut self, ray: &Ray, after: f64) -> Meeting {
+        self.scenery.meet(ray, after, &mut self.scratch)
     }
 
     /// The colour that what the eye sees has itself.

@@ -24,30 +24,52 @@ impl Tile {
         u64::from(self.size[0]) * u64::from(self.size[1])
     }
 
-    /// Smaller tiles that make it up, whose rays mostly meet the same few things.
+    /// Smaller tiles that make it up, whose rays mostly meet the same few things; they start at multiples of their side in the
+    /// whole picture.
     pub fn parts(self) -> impl Iterator<Item = Tile> {
         let [w, h] = self.size;
-        let rows = (0..h).step_by(PART as usize);
-        rows.flat_map(move |y| (0..w).step_by(PART as usize).map(move |x| (x, y))).map(move |(x, y)| Tile {
-            x: self.x + x,
-            y: self.y + y,
-            size: [PART.min(w - x), PART.min(h - y)],
-        })
+        cells([self.x, self.y, self.x + w, self.y + h], PART)
+    }
+
+    /// All pixels, of a picture of a size, of the part that this one is or lies in.
+    pub fn whole_part(&self, size: [u32; 2]) -> Tile {
+        let [x, y] = [self.x, self.y].map(|at| at / PART * PART);
+        Tile { x, y, size: [PART.min(size[0] - x), PART.min(size[1] - y)] }
+    }
+
+    /// Its pixels, row by row.
+    pub fn each(&self) -> impl Iterator<Item = [u32; 2]> + use<> {
+        let Tile { x, y, size: [w, h] } = *self;
+        (y..y + h).flat_map(move |y| (x..x + w).map(move |x| [x, y]))
+    }
+
+    /// Where a pixel of it stands in that order.
+    pub fn index(&self, [x, y]: [u32; 2]) -> usize {
+        (y - self.y) as usize * self.size[0] as usize + (x - self.x) as usize
+    }
+
+    /// Whether it has a pixel.
+    pub fn has(&self, [x, y]: [u32; 2]) -> bool {
+        (self.x..self.x + self.size[0]).contains(&x) && (self.y..self.y + self.size[1]).contains(&y)
     }
 }
 
 /// Tiles that cover a window `[x0, y0, x1, y1]`, row by row. They start at multiples of the side in the whole
 /// picture, so that a cropped picture has the tiles of the whole one.
-pub fn cover([x0, y0, x1, y1]: [u32; 4]) -> Vec<Tile> {
-    let mut tiles = Vec::new();
-    for row in y0 / SIDE..y1.div_ceil(SIDE) {
-        for column in x0 / SIDE..x1.div_ceil(SIDE) {
-            let (x, y) = ((column * SIDE).max(x0), (row * SIDE).max(y0));
-            let end = |cell: u32, limit: u32| ((cell + 1).saturating_mul(SIDE)).min(limit);
-            tiles.push(Tile { x, y, size: [end(column, x1) - x, end(row, y1) - y] });
-        }
-    }
-    tiles
+pub fn cover(window: [u32; 4]) -> Vec<Tile> {
+    cells(window, SIDE).collect()
+}
+
+/// The squares of a grid that cover a window, cut to it.
+fn cells([x0, y0, x1, y1]: [u32; 4], side: u32) -> impl Iterator<Item = Tile> {
+    let rows = y0 / side..y1.div_ceil(side);
+    rows.flat_map(move |row| (x0 / side..x1.div_ceil(side)).map(move |column| [column, row])).map(
+        move |[column, row]| {
+            let (x, y) = ((column * side).max(x0), (row * side).max(y0));
+            let end = |cell: u32, limit: u32| ((cell + 1).saturating_mul(side)).min(limit);
+            Tile { x, y, size: [end(column, x1) - x, end(row, y1) - y] }
+        },
+    )
 }
 
 #[cfg(test)]

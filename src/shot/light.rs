@@ -4,8 +4,11 @@
 //! sky alone, has radiance c x colour x intensity.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use glam::DVec3;
+
+use super::Environment;
 
 use crate::geom::tolerance;
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};
@@ -14,7 +17,7 @@ use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};
 pub const DECL: Decl = Decl {
     word: "light",
     group: Group::Light,
-    doc: "A sun (`direction`), a point light (`at`), an area light (`at`, `size` and `look_at`) or, by `color` alone, a sky.",
+    doc: "A sun (`direction`), a point light (`at`), an area light (`at`, `size` and `look_at`) or, by `color` or `image` alone, a sky.",
     params: &[
         Param::named("direction", Kind::Vector(3), "a sun: the way its light travels"),
         Param::named("softness", Kind::Angle, "the sun's full angular diameter; default 0deg"),
@@ -26,6 +29,11 @@ pub const DECL: Decl = Decl {
         ),
         Param::named("look_at", Kind::Vector(3), "the point that an area light faces; behind it is no light"),
         Param::named("falloff", Kind::Bool, "whether a point light fades with distance; default true"),
+        Param::named(
+            "image",
+            Kind::Path,
+            "a sky: an EXR, HDR or PNG of all directions, what a spherical camera sees that looks along +y",
+        ),
         Param::named("color", Kind::Color, "its colour; default white"),
         Param::named("intensity", Kind::Number, "a factor of the colour; default 1"),
     ],
@@ -33,7 +41,7 @@ pub const DECL: Decl = Decl {
 };
 
 /// A light. `color` is linear and holds the intensity: what a white matte surface that gets all of it shows.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub enum Light {
     /// Light from far away.
     Sun {
@@ -69,6 +77,13 @@ pub enum Light {
         /// Radiance of every direction.
         color: [f32; 3],
     },
+    /// Light from all around, by a picture.
+    Image {
+        /// Its radiance by direction.
+        map: Arc<Environment>,
+        /// Multiplies it.
+        color: [f32; 3],
+    },
     /// Light from the eye, without distance and without shadow: what the eye sees it reaches.
     Headlight {
         /// Colour times intensity.
@@ -84,8 +99,8 @@ const DEFAULT_SKY: f32 = 0.4;
 pub const DEFAULT: [Light; 2] =
     [Light::Sky { color: [DEFAULT_SKY; 3] }, Light::Headlight { color: [1.0 - DEFAULT_SKY; 3] }];
 
-/// Builds the light of a `light` item.
-pub fn build(call: &Call) -> Result<Light, BuildError> {
+/// Builds the light of a `light` item; `map` is what its `image` holds.
+pub fn build(call: &Call, map: Option<Arc<Environment>>) -> Result<Light, BuildError> {
     let color = radiance(call)?;
     let (direction, at) = (call.vec3("direction"), call.vec3("at"));
     if call.get("softness").is_some() && direction.is_none() {
@@ -93,6 +108,9 @@ pub fn build(call: &Call) -> Result<Light, BuildError> {
     }
     if call.get("falloff").is_some() && at.is_none() {
         return Err(error("falloff", "only a point light has `falloff`", "give the point light `at:`"));
+    }
+    if call.get("image").is_some() {
+        return sky_of(call, color, map);
     }
     if call.get("size").is_some() || call.get("look_at").is_some() {
         return area(call, color);
@@ -110,6 +128,17 @@ pub fn build(call: &Call) -> Result<Light, BuildError> {
             "give `direction:` for a sun, `at:` for a point light, with `size:` and `look_at:` for an area light, or `color:` for a sky",
         )),
     }
+}
+
+/// A sky with a picture, black where that is black.
+fn sky_of(call: &Call, color: [f32; 3], map: Option<Arc<Environment>>) -> Result<Light, BuildError> {
+    for other in ["direction", "softness", "at", "size", "look_at", "falloff"] {
+        if call.get(other).is_some() {
+            let help = "a sky has `image:`, `color:` and `intensity:`";
+            return Err(error(other, format!("a sky has no `{other}`"), help));
+        }
+    }
+    Ok(map.map_or(Light::Sky { color: [0.0; 3] }, |map| Light::Image { map, color }))
 }
 
 fn area(call: &Call, color: [f32; 3]) -> Result<Light, BuildError> {

@@ -2,12 +2,16 @@
 //! or files.
 
 pub mod camera;
+pub mod clear;
+mod environment;
 pub mod light;
 pub mod material;
 pub mod settings;
 mod world;
 
 pub use camera::Camera;
+pub use clear::{Clear, Filling, Meeting};
+pub use environment::Environment;
 pub use light::Light;
 pub use material::Material;
 pub use settings::Settings;

@@ -12,6 +12,16 @@ pub const DECL: Decl = Decl {
         Param::named("size", Kind::Vector(2), "width and height, pixels; default [800, 600]"),
         Param::named("samples", Kind::Int(1, MAX_SAMPLES as i64), "rays a pixel; default 16"),
         Param::named(
+            "error",
+            Kind::Positive,
+            "samples are taken until a pixel's standard error is at most this, of a display's 0 to 1; `samples` is the most then",
+        ),
+        Param::named(
+            "filter",
+            Kind::Choice(&["box", "tent", "gauss", "mitchell"]),
+            "how samples are spread around their pixel; default box",
+        ),
+        Param::named(
             "integrator",
             Kind::Choice(&["direct", "path", "ao", "normals", "depth", "flat"]),
             "what a ray brings back",
@@ -23,6 +33,11 @@ pub const DECL: Decl = Decl {
             Kind::Choice(&["agx", "reinhard", "none"]),
             "the curve from light to pixels; default agx, for pictures of facts none",
         ),
+        Param::named(
+            "bounces",
+            Kind::Int(1, MAX_BOUNCES as i64),
+            "how often light may turn on its way, for \"path\" and in glass and mirrors; default 16",
+        ),
         Param::named("seed", Kind::Int(0, i64::MAX), "chooses the noise; default 0"),
     ],
     example: "render(size: [640, 480], samples: 64)",
@@ -33,6 +48,9 @@ pub const MAX_SAMPLES: u32 = 1 << 16;
 
 /// The most pixels a picture has: its colours take 16 GiB, and both file formats can hold it.
 pub const MAX_PIXELS: u64 = 1 << 30;
+
+/// Where light turns more often hardly any of it is left; each turn has numbers of its own to choose by.
+pub const MAX_BOUNCES: u32 = 1 << 10;
 
 /// Beyond this many stops `f32` colours overflow or vanish.
 const MAX_EXPOSURE: f64 = 100.0;
@@ -52,6 +70,8 @@ const AOV_WORDS: [&str; Aov::ALL.len()] = {
 pub enum Integrator {
     /// Light that comes straight from the lights.
     Direct,
+    /// All light, from surface to surface.
+    Path,
     /// The share of the sky above each point that nothing covers.
     Ao,
     /// Normals as colours, -1 to 1 as 0 to 1.
@@ -73,6 +93,30 @@ pub enum Tone {
     None,
 }
 
+/// How far around a pixel's middle its samples lie, and how they weigh.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Filter {
+    /// Evenly over the pixel.
+    Box,
+    /// Falling straight to nothing one pixel away.
+    Tent,
+    /// A bell of half a pixel's standard deviation, cut at one and a half.
+    Gauss,
+    /// Mitchell and Netravali 1988 with B = C = 1/3, up to two pixels away: the sharpest, with a dark rim around bright lines.
+    Mitchell,
+}
+
+impl Filter {
+    fn of(word: &str) -> Filter {
+        match word {
+            "tent" => Filter::Tent,
+            "gauss" => Filter::Gauss,
+            "mitchell" => Filter::Mitchell,
+            _ => Filter::Box,
+        }
+    }
+}
+
 /// Settings.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Settings {
@@ -90,6 +134,13 @@ pub struct Settings {
     pub exposure: f64,
     /// The curve, for pictures that are shown.
     pub tone: Tone,
+    /// Where given, samples are taken until the standard error of a pixel is at most this, of what a display shows from 0 to
+    /// 1; `samples` is then the most.
+    pub error: Option<f64>,
+    /// How samples are spread around their pixel.
+    pub filter: Filter,
+    /// How often light may turn on its way, for integrators that follow it; from 1 to [`MAX_BOUNCES`].
+    pub bounces: u32,
     /// Chooses the noise.
     pub seed: u64,
 }
@@ -117,6 +168,9 @@ impl Default for Settings {
             aov: Vec::new(),
             exposure: 0.0,
             tone: Tone::Agx,
+            error: None,
+            filter: Filter::Box,
+            bounces: 16,
             seed: 0,
         }
     }
@@ -140,9 +194,20 @@ pub fn build(call: &Call) -> Result<Settings, BuildError> {
         Some("reinhard") => Tone::Reinhard,
         Some(_) => Tone::None,
         // Facts shall be read off the picture as they are.
-        None if settings.integrator == Integrator::Direct => Tone::Agx,
+        None if matches!(settings.integrator, Integrator::Direct | Integrator::Path) => Tone::Agx,
         None => Tone::None,
     };
+    settings.error = call.number("error");
+    if settings.error.is_some_and(|e| !(e.is_finite() && 0.0 < e)) {
+        return Err(error(
+            "error",
+            "`error` must be above zero",
+            "0.01 is some three of the 256 steps of a display",
+        ));
+    }
+    settings.filter = Filter::of(call.text("filter").unwrap_or("box"));
+    let bounces = whole(call, "bounces", 1, u64::from(MAX_BOUNCES))?;
+    settings.bounces = bounces.map_or(settings.bounces, |n| n as u32);
     settings.seed = whole(call, "seed", 0, i64::MAX as u64)?.unwrap_or(0);
     Ok(settings)
 }
@@ -236,15 +301,15 @@ fn checked_size(size: [u64; 2]) -> Result<[u32; 2], BuildError> {
 fn integrator(word: &str) -> Result<Integrator, BuildError> {
     match word {
         "direct" => Ok(Integrator::Direct),
+        "path" => Ok(Integrator::Path),
         "ao" => Ok(Integrator::Ao),
         "normals" => Ok(Integrator::Normals),
         "depth" => Ok(Integrator::Depth),
         "flat" => Ok(Integrator::Flat),
-        _ => Err(error(
-            "integrator",
-            format!("the integrator \"{word}\" is not there yet"),
-            "\"direct\" has light from the lights, \"ao\" has soft shade",
-        )),
+        _ => {
+            let help = "one of: direct, path, ao, normals, depth, flat";
+            Err(error("integrator", format!("there is no integrator \"{word}\""), help))
+        }
     }
 }
 

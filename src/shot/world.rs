@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::clear::{Clear, Meeting};
 use crate::csg::{self, Boundary, Bundle, Leaf, Object, Part, Spans};
 use crate::geom::{Aabb, Interval, Ray, tolerance};
 
@@ -13,6 +14,10 @@ pub struct World {
     bounds: Aabb,
     /// The material of a face that has none.
     bare: u32,
+    /// The solids by what fills them, where some are clear.
+    clear: Option<Clear>,
+    /// For each solid drawn the first of its leaves, in the order written.
+    draws: Vec<u32>,
 }
 
 /// The first thing a ray meets.
@@ -52,7 +57,41 @@ impl World {
     /// The union of `solids` and the sheets beside it. `bounds` is a box around what is bounded, `bare` the material
     /// of faces that have none.
     pub fn new(solids: Object, sheets: Vec<Leaf>, bounds: Aabb, bare: u32) -> World {
-        World { solids, sheets, bounds, bare }
+        World { solids, sheets, bounds, bare, clear: None, draws: Vec::new() }
+    }
+
+    /// The same with the first leaf of each solid drawn, so that faces can be told apart by them ([`World::owner`]).
+    pub fn with_draws(self, draws: Vec<u32>) -> World {
+        World { draws, ..self }
+    }
+
+    /// The number of what is drawn that a face belongs to, from 1 in the order written; sheets come after solids.
+    pub fn owner(&self, hit: &Hit) -> u32 {
+        if hit.sheet {
+            return (self.draws.len() as u32).saturating_add(hit.boundary.leaf).saturating_add(1);
+        }
+        let leaf = self.solids.holder(hit.boundary.leaf);
+        self.draws.partition_point(|first| *first <= leaf) as u32
+    }
+
+    /// The same where light goes through some of the solids.
+    pub fn with_clear(self, clear: Clear) -> World {
+        World { clear: Some(clear), ..self }
+    }
+
+    /// Whether light goes through any of the solids.
+    pub fn is_clear(&self) -> bool {
+        self.clear.is_some()
+    }
+
+    /// What a ray meets first past `after`, faces between like and like left out, and what fills the space on both sides of
+    /// it. Where nothing is clear solids are opaque.
+    pub fn meet(&self, ray: &Ray, after: f64, scratch: &mut csg::Scratch) -> Meeting {
+        match &self.clear {
+            Some(clear) if counted(ray, scratch) => clear.meet(self, ray, after, scratch),
+            Some(_) => Meeting::opaque(None),
+            None => Meeting::opaque(self.first(ray, Interval::new(after, f64::INFINITY), scratch)),
+        }
     }
 
     /// The union of the solids.
@@ -89,9 +128,16 @@ impl World {
             return None;
         }
         let solid = self.solids.first_of(bundle, ray, range, scratch);
-        let mut best = solid.map(|(boundary, entering)| Hit { boundary, entering, sheet: false });
+        let solid = solid.map(|(boundary, entering)| Hit { boundary, entering, sheet: false });
+        let end = solid.map_or(range.hi, |hit| hit.boundary.t.min(range.hi));
+        self.first_sheet(ray, Interval::new(range.lo, end), scratch).or(solid)
+    }
+
+    /// The first crossing of a sheet in the range.
+    pub(super) fn first_sheet(&self, ray: &Ray, range: Interval, scratch: &mut csg::Scratch) -> Option<Hit> {
+        let mut best: Option<Hit> = None;
         for index in 0..self.sheets.len() {
-            let end = best.map_or(range.hi, |hit| hit.boundary.t.min(range.hi));
+            let end = best.map_or(range.hi, |hit| hit.boundary.t);
             let nearest = self.sheet(index, ray, Interval::new(range.lo, end), scratch, |_| false);
             best = nearest.or(best);
         }
@@ -165,8 +211,14 @@ impl World {
 
     #[inline]
     fn part(&self, hit: &Hit) -> Part<'_> {
-        let index = hit.boundary.leaf;
-        if hit.sheet { Part::of(&self.sheets[index as usize]) } else { self.solids.part(index) }
+        self.part_of(&hit.boundary, hit.sheet)
+    }
+
+    /// The leaf of a boundary.
+    #[inline]
+    pub(super) fn part_of(&self, boundary: &Boundary, is_sheet: bool) -> Part<'_> {
+        let index = boundary.leaf;
+        if is_sheet { Part::of(&self.sheets[index as usize]) } else { self.solids.part(index) }
     }
 
     /// The surface of a hit.

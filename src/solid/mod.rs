@@ -195,6 +195,8 @@ pub struct Counts {
     pub guides: u64,
     /// Polynomials fitted to F = 0.
     pub patches: u64,
+    /// Of all projections, those that fitted them: each is made once, by whichever ray comes first.
+    pub building: u64,
     /// Questions to leaves.
     pub leaf_queries: u64,
     /// Leaves whose box a ray met and that were never asked.
@@ -210,6 +212,29 @@ pub struct Counts {
 }
 
 impl Counts {
+    /// What was counted since an earlier state of the same counts.
+    pub fn since(&self, before: &Counts) -> Counts {
+        Counts {
+            projections: self.projections - before.projections,
+            degree_falls: self.degree_falls - before.degree_falls,
+            crossings: self.crossings - before.crossings,
+            certificate_failures: self.certificate_failures - before.certificate_failures,
+            parity_repairs: self.parity_repairs - before.parity_repairs,
+            odd_chords: self.odd_chords - before.odd_chords,
+            caps: self.caps - before.caps,
+            patch_hits: self.patch_hits - before.patch_hits,
+            guides: self.guides - before.guides,
+            patches: self.patches - before.patches,
+            building: self.building - before.building,
+            leaf_queries: self.leaf_queries - before.leaf_queries,
+            leaves_skipped: self.leaves_skipped - before.leaves_skipped,
+            ties: self.ties - before.ties,
+            cleaned: self.cleaned - before.cleaned,
+            invalid_rays: self.invalid_rays - before.invalid_rays,
+            bad_leaves: self.bad_leaves - before.bad_leaves,
+        }
+    }
+
     /// Adds another thread's counts.
     pub fn add(&mut self, o: &Counts) {
         self.projections += o.projections;
@@ -222,6 +247,7 @@ impl Counts {
         self.patch_hits += o.patch_hits;
         self.guides += o.guides;
         self.patches += o.patches;
+        self.building += o.building;
         self.leaf_queries += o.leaf_queries;
         self.leaves_skipped += o.leaves_skipped;
         self.ties += o.ties;

@@ -42,6 +42,8 @@ pub(super) struct Work {
     pub guides: u64,
     /// Patches made.
     pub patches: u64,
+    /// Projections for making them.
+    pub building: u64,
 }
 
 impl Room {
@@ -51,6 +53,7 @@ impl Room {
         counts.degree_falls += self.work.falls - before.falls;
         counts.guides += self.work.guides - before.guides;
         counts.patches += self.work.patches - before.patches;
+        counts.building += self.work.building - before.building;
     }
 }
 

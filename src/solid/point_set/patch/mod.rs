@@ -216,7 +216,9 @@ impl Patches {
             return Some(Follows { patch: guide, id });
         }
         let make = || {
+            let before = room.work.projections;
             let made = build::patch(set, guide, room).map(Box::new);
+            room.work.building += room.work.projections - before;
             room.work.patches += u64::from(made.is_some());
             made
         };

@@ -1,0 +1,179 @@
+//! The samples of pixels, and how many each needs.
+//!
+//! Where an error is asked for, a pixel's samples double until its error is below. The error is told by how the four quarters
+//! of its samples differ: each quarter of a Sobol sequence is spread well by itself, so that this is nearer to the truth than
+//! how single samples differ, and still above it. A quarter may miss what is rare, so neighbours are judged together, within
+//! parts of the picture that are the same whatever is cropped.
+
+use super::integrator::Painter;
+use super::layers::{self, Sums};
+use super::sampler::PixelSampler;
+use super::scenery::{Scenery, Seen, Tracer};
+use super::tiles::Tile;
+use crate::film::Film;
+use crate::geom::Ray;
+use crate::num::srgb;
+use crate::solid::Counts;
+
+/// The pair of a sample that chooses a place on the lens: none of those that lights take.
+const LENS_PAIR: u32 = 1 << 20;
+
+/// So many samples every pixel has before it is judged: four in each quarter.
+const FIRST: u32 = 16;
+
+/// A pixel on its way.
+#[derive(Clone, Copy, Default)]
+struct Pixel {
+    /// Colour and coverage of all samples.
+    sum: [f32; 4],
+    /// Samples taken.
+    taken: u32,
+    /// Brightness and number of the samples of each quarter.
+    quarters: [(f64, u32); 4],
+    /// The work of its rays.
+    work: Counts,
+    /// What the ray through the centre sees, where layers asked.
+    centre: Option<Option<Seen>>,
+}
+
+impl Pixel {
+    /// Makes room for as many samples again: the quarters so far become two.
+    fn fold(&mut self) {
+        let [a, b, c, d] = self.quarters;
+        let both = |(x, n): (f64, u32), (y, m): (f64, u32)| (x + y, n + m);
+        self.quarters = [both(a, b), both(c, d), (0.0, 0), (0.0, 0)];
+    }
+
+    /// The mean brightness.
+    fn brightness(&self) -> f64 {
+        self.quarters.iter().map(|(sum, _)| sum).sum::<f64>() / f64::from(self.taken)
+    }
+
+    /// The squared standard error of the brightness; infinite where a single sample tells nothing.
+    fn variance(&self) -> f64 {
+        let mean = self.brightness();
+        let quarters = self.quarters.iter().filter(|(_, n)| 0 < *n);
+        let apart = |(sum, n): &(f64, u32)| f64::from(*n) * (sum / f64::from(*n) - mean).powi(2);
+        let degrees = quarters.clone().count() as f64 - 1.0;
+        if degrees == 0.0 {
+            f64::INFINITY
+        } else {
+            quarters.map(apart).sum::<f64>() / f64::from(self.taken) / degrees
+        }
+    }
+}
+
+/// Rec. 709 luminance.
+fn luminance([r, g, b, _]: [f32; 4]) -> f64 {
+    f64::from(0.2126 * r + 0.7152 * g + 0.0722 * b)
+}
+
+impl<S: Scenery> Painter<'_, S> {
+    /// The pixels that are judged together with those of a part: all of the part that they are in, where pixels are judged.
+    pub(super) fn cell(&self, part: &Tile) -> Tile {
+        match self.view.settings.error {
+            Some(_) => part.whole_part(self.view.settings.size),
+            None => *part,
+        }
+    }
+
+    /// Paints a part of a tile; `cell` is what is judged together with it.
+    pub(super) fn part(
+        &self,
+        tracer: &mut Tracer<S>,
+        part: &Tile,
+        cell: &Tile,
+        tile: &Tile,
+        film: &mut Film,
+    ) {
+        let most = self.view.settings.samples;
+        let first = if self.view.settings.error.is_some() { most.min(FIRST) } else { most };
+        let mut pixels = vec![Pixel::default(); cell.pixels() as usize];
+        for (at, pixel) in cell.each().zip(&mut pixels) {
+            if part.has(at) && !film.layers.is_empty() {
+                pixel.centre = Some(self.centre(tracer, at, tile, film));
+            }
+            self.sample(tracer, at, pixel, first, |i| (4 * u64::from(i) / u64::from(first)) as usize);
+        }
+        while let Some(open) = self.open(cell, &pixels) {
+            for ((at, pixel), _) in cell.each().zip(&mut pixels).zip(open).filter(|(_, open)| *open) {
+                let (from, to) = (pixel.taken, most.min(2 * pixel.taken));
+                pixel.fold();
+                self.sample(tracer, at, pixel, to, |i| if i - from < from / 2 { 2 } else { 3 });
+            }
+        }
+        for (at, pixel) in cell.each().zip(&pixels).filter(|(at, _)| part.has(*at)) {
+            let index = tile.index(at);
+            film.rgba[index] = pixel.sum.map(|s| s / pixel.taken as f32);
+            let sums = Sums { work: pixel.work, variance: pixel.variance(), samples: pixel.taken };
+            layers::sum_up(film, index, &sums);
+        }
+    }
+
+    /// Which pixels need more samples; `None` where none does.
+    fn open(&self, cell: &Tile, pixels: &[Pixel]) -> Option<Vec<bool>> {
+        let error = self.view.settings.error?;
+        let gain = libm::exp2(self.view.settings.exposure);
+        let squared = |pixel: &Pixel| {
+            let slope = srgb::slope((gain * pixel.brightness()).clamp(0.0, 1.0)) * gain;
+            pixel.variance() * slope * slope
+        };
+        let squared: Vec<f64> = pixels.iter().map(squared).collect();
+        let near = |[x, y]: [u32; 2]| {
+            let around =
+                Tile { x: x.saturating_sub(1), y: y.saturating_sub(1), size: [2 + x.min(1), 2 + y.min(1)] };
+            let near: Vec<f64> =
+                around.each().filter(|at| cell.has(*at)).map(|at| squared[cell.index(at)]).collect();
+            near.iter().sum::<f64>() / near.len() as f64
+        };
+        let most = self.view.settings.samples;
+        let is_open = |(at, pixel): ([u32; 2], &Pixel)| pixel.taken < most && error * error < near(at);
+        let open: Vec<bool> = cell.each().zip(pixels).map(is_open).collect();
+        open.contains(&true).then_some(open)
+    }
+
+    /// Keeps what the ray through a pixel's centre sees.
+    fn centre(&self, tracer: &mut Tracer<S>, at: [u32; 2], tile: &Tile, film: &mut Film) -> Option<Seen> {
+        let [x, y] = at.map(|i| f64::from(i) + 0.5);
+        let ray = self.view.camera.ray(x, y, self.view.settings.size);
+        let seen = tracer.see(&ray);
+        let albedo = seen.as_ref().map(|seen| (seen, self.albedo(tracer, seen)));
+        layers::keep(film, tile.index(at), &ray, albedo, tracer);
+        seen
+    }
+
+    /// Takes samples of a pixel of the whole picture up to a number; `quarter` says where each counts.
+    fn sample(
+        &self,
+        tracer: &mut Tracer<S>,
+        [x, y]: [u32; 2],
+        pixel: &mut Pixel,
+        to: u32,
+        quarter: impl Fn(u32) -> usize,
+    ) {
+        let settings = self.view.settings;
+        let single = settings.samples == 1;
+        let before = tracer.scratch.solid.counts;
+        let sampler = PixelSampler::new(settings.seed, x, y);
+        for i in pixel.taken..to {
+            let sample = sampler.sample(i);
+            // A single sample is what `probe` sees: it goes through the middles of pixel and lens.
+            let ([dx, dy], weight) = if single { ([0.5; 2], 1.0) } else { self.spread.place(sample.pair(0)) };
+            let on_lens = || if single { [0.0; 2] } else { sample.pair(LENS_PAIR) };
+            let [x, y] = [f64::from(x) + dx, f64::from(y) + dy];
+            let ray: Ray = self.view.camera.ray_through(x, y, settings.size, on_lens);
+            let seen = pixel.centre.filter(|_| single).unwrap_or_else(|| tracer.see(&ray));
+            let mut value = self.value(tracer, &ray, seen.as_ref(), sample);
+            if let Some(ghosts) = &self.ghosts {
+                value = ghosts.over(&mut tracer.scratch, &ray, seen.as_ref(), value);
+            }
+            let value = value.map(|v| v * weight);
+            pixel.sum.iter_mut().zip(value).for_each(|(s, v)| *s += v);
+            let (sum, count) = &mut pixel.quarters[quarter(i)];
+            *sum += luminance(value);
+            *count += 1;
+        }
+        pixel.taken = to;
+        pixel.work.add(&tracer.scratch.solid.counts.since(&before));
+    }
+}
