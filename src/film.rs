@@ -117,10 +117,12 @@ pub struct Film {
 
 /// There is not enough memory for a picture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
-#[error("no memory for a picture of {} x {} pixels", size[0], size[1])]
+#[error("no memory for {} x {} pixels: {} MiB are wanted", size[0], size[1], bytes.div_ceil(1 << 20))]
 pub struct NoRoom {
     /// The size asked for.
     pub size: [u32; 2],
+    /// What it takes.
+    pub bytes: u64,
 }
 
 impl Film {
@@ -135,7 +137,7 @@ impl Film {
             })
             .collect::<Option<Vec<Layer>>>();
         let rgba = filled(pixels, [0.0; 4]);
-        rgba.zip(layers).map(|(rgba, layers)| Film { size, rgba, layers }).ok_or(NoRoom { size })
+        rgba.zip(layers).map(|(rgba, layers)| Film { size, rgba, layers }).ok_or(NoRoom { size, bytes: pixels * pixel_bytes(aovs) })
     }
 
     /// The colour of a pixel.
@@ -163,6 +165,12 @@ impl Film {
             }
         }
     }
+}
+
+/// What a pixel takes in memory, bytes.
+pub fn pixel_bytes(aovs: &[Aov]) -> u64 {
+    let floats = 4 + aovs.iter().map(|aov| aov.channels().len()).sum::<usize>();
+    (floats * size_of::<f32>()) as u64
 }
 
 /// So many copies of a value, or `None` where memory does not suffice.

@@ -7,7 +7,7 @@ use super::lighting::{Lights, open_sky};
 use super::sampler::Sample;
 use super::scenery::{Rays, Scenery, Seen, Tracer};
 use super::tiles::Tile;
-use super::{RenderError, View};
+use super::{Progress, RenderError, View};
 use crate::csg::Bundle;
 use crate::film::Film;
 use crate::geom::{Beam, Interval, Ray};
@@ -40,8 +40,8 @@ impl<'a, S: Scenery> Painter<'a, S> {
         Painter { scenery, view: *view, lights: Lights::new(view.lights), ghosts, spread, depths }
     }
 
-    /// Paints a tile.
-    pub fn tile(&self, tile: &Tile) -> Result<(Film, Rays, Counts), RenderError> {
+    /// Paints a tile, or the first pixels of one that is given up.
+    pub fn tile(&self, tile: &Tile, progress: &Progress) -> Result<(Film, Rays, Counts), RenderError> {
         let mut film = Film::new(tile.size, &self.view.settings.aov)?;
         let mut tracer = Tracer::new(self.scenery);
         let whole = self.beam(tile).map_or_else(Bundle::default, |beam| self.scenery.bundle(&beam));
@@ -52,7 +52,10 @@ impl<'a, S: Scenery> Painter<'a, S> {
             if let Some(beam) = self.beam(&cell) {
                 tracer.bundle = self.scenery.part_of_bundle(bundle, &beam);
             }
-            self.part(&mut tracer, &part, &cell, tile, &mut film);
+            self.part(&mut tracer, &part, &cell, (tile, progress), &mut film);
+            if progress.gives_up() {
+                break;
+            }
         }
         Ok((film, tracer.rays, tracer.scratch.solid.counts))
     }

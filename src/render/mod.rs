@@ -11,33 +11,57 @@ mod path;
 mod pixels;
 mod sampler;
 mod scenery;
+mod slabs;
 mod tiles;
 
-use std::any::Any;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Mutex;
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use rayon::prelude::*;
-
 pub use scenery::{Rays, Scenery};
+pub use slabs::{Done, Moment, Onlooker, Slab, Work};
+pub use tiles::Tile;
 
 use crate::film::{Film, NoRoom};
 use crate::shot::{Camera, Light, Material, Settings, Shot, World};
 use crate::solid::Counts;
-use integrator::Painter;
-use tiles::Tile;
+use slabs::Cut;
 
-/// How many pixels are done; to be read by another thread.
+/// How many pixels are done, and whether more shall be; to be read and told by other threads.
 #[derive(Default, Debug)]
 pub struct Progress {
     done: AtomicU64,
+    stopped: AtomicBool,
+    given_up: AtomicBool,
 }
 
 impl Progress {
     /// Pixels done, of [`Settings::pixels`].
     pub fn done(&self) -> u64 {
         self.done.load(Ordering::Relaxed)
+    }
+
+    /// From now on no tile is begun; those under way are painted to their end.
+    pub fn stop(&self) {
+        self.stopped.store(true, Ordering::Relaxed);
+    }
+
+    /// Tiles under way are dropped, too.
+    pub fn give_up(&self) {
+        self.stop();
+        self.given_up.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether no more tiles are begun.
+    pub fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+
+    fn gives_up(&self) -> bool {
+        self.given_up.load(Ordering::Relaxed)
+    }
+
+    fn add(&self, pixels: u64) {
+        self.done.fetch_add(pixels, Ordering::Relaxed);
     }
 }
 
@@ -83,74 +107,78 @@ pub enum RenderError {
     },
 }
 
-/// Renders a shot on the threads of the current rayon pool.
-pub fn render(shot: &Shot, progress: &Progress) -> Result<Rendered, RenderError> {
-    let view = View {
-        camera: &shot.camera,
-        lights: &shot.lights,
-        materials: &shot.materials,
-        ghosts: shot.ghosts.as_ref(),
-        settings: &shot.settings,
-    };
-    render_scenery(&shot.world, &view, progress)
+impl<'a> From<&'a Shot> for View<'a> {
+    fn from(shot: &'a Shot) -> View<'a> {
+        View {
+            camera: &shot.camera,
+            lights: &shot.lights,
+            materials: &shot.materials,
+            ghosts: shot.ghosts.as_ref(),
+            settings: &shot.settings,
+        }
+    }
 }
 
-/// Renders anything that answers rays.
+/// Renders a shot on the threads of the current rayon pool, to a film that is kept whole.
+pub fn render(shot: &Shot, progress: &Progress) -> Result<Rendered, RenderError> {
+    render_scenery(&shot.world, &View::from(shot), progress)
+}
+
+/// Renders a shot on the threads of the current rayon pool, for somebody who looks on. Fails where nothing can be made;
+/// what else goes wrong is told in [`Done`], and the rest is made.
+pub fn render_for(
+    shot: &Shot,
+    progress: &Progress,
+    onlooker: &mut dyn Onlooker,
+) -> Result<Done, RenderError> {
+    render_scenery_for(&shot.world, &View::from(shot), progress, onlooker)
+}
+
+/// The same of anything that answers rays.
+pub fn render_scenery_for<S: Scenery>(
+    scenery: &S,
+    view: &View,
+    progress: &Progress,
+    onlooker: &mut dyn Onlooker,
+) -> Result<Done, RenderError> {
+    slabs::render(scenery, view, progress, onlooker, &Cut::default())
+}
+
+/// Renders anything that answers rays to a film that is kept whole.
 pub fn render_scenery<S: Scenery>(
     scenery: &S,
     view: &View,
     progress: &Progress,
 ) -> Result<Rendered, RenderError> {
-    render_tiles(scenery, view, progress, tiles::cover(view.settings.window()))
+    render_whole(scenery, view, progress, &Cut::default())
 }
 
-/// Renders tiles, whose order is of no consequence.
-fn render_tiles<S: Scenery>(
+fn render_whole<S: Scenery>(
     scenery: &S,
     view: &View,
     progress: &Progress,
-    tiles: Vec<Tile>,
+    cut: &Cut,
 ) -> Result<Rendered, RenderError> {
-    let settings = view.settings;
-    let film = Mutex::new(Film::new(settings.window_size(), &settings.aov)?);
-    let [x0, y0, ..] = settings.window();
-    let painter = Painter::new(scenery, view);
-    let failed = AtomicBool::new(false);
-    let work: Vec<(Rays, Counts)> = tiles
-        .par_iter()
-        .map(|tile| {
-            if failed.load(Ordering::Relaxed) {
-                return Ok(Default::default());
-            }
-            let (part, rays, counts) = paint_caught(&painter, tile).inspect_err(|_| {
-                failed.store(true, Ordering::Relaxed);
-            })?;
-            // Nothing panics while the lock is held, so a poisoned lock still guards a whole film.
-            film.lock().unwrap_or_else(|e| e.into_inner()).paste(&part, [tile.x - x0, tile.y - y0]);
-            progress.done.fetch_add(tile.pixels(), Ordering::Relaxed);
-            Ok((rays, counts))
-        })
-        .collect::<Result<_, RenderError>>()?;
-    let mut rays = Rays::default();
-    let mut counts = Counts::default();
-    for (r, c) in &work {
-        rays.add(r);
-        counts.add(c);
+    let mut whole = Whole { film: Film::new(view.settings.window_size(), &view.settings.aov)?, rows: 0 };
+    let done = slabs::render(scenery, view, progress, &mut whole, cut)?;
+    match done.failed {
+        Some(e) => Err(e),
+        None => Ok(Rendered { film: whole.film, rays: done.work.rays, counts: done.work.counts }),
     }
-    Ok(Rendered { film: film.into_inner().unwrap_or_else(|e| e.into_inner()), rays, counts })
 }
 
-/// Paints a tile; a panic becomes an error that says where.
-fn paint_caught<S: Scenery>(painter: &Painter<S>, tile: &Tile) -> Result<(Film, Rays, Counts), RenderError> {
-    let painted = catch_unwind(AssertUnwindSafe(|| painter.tile(tile)));
-    painted.unwrap_or_else(|panic| {
-        Err(RenderError::Panicked { at: [tile.x, tile.y], message: panic_message(&*panic) })
-    })
+/// Puts rows together.
+struct Whole {
+    film: Film,
+    rows: u32,
 }
 
-fn panic_message(panic: &(dyn Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
-    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic".to_owned())
+impl Onlooker for Whole {
+    fn rows(&mut self, rows: &Film) -> ControlFlow<()> {
+        self.film.paste(rows, [0, self.rows]);
+        self.rows += rows.size[1];
+        ControlFlow::Continue(())
+    }
 }
 
 #[cfg(test)]
@@ -189,16 +217,19 @@ mod tests {
     }
 
     #[test]
-    fn the_order_of_tiles_changes_no_bit() {
+    fn the_order_of_tiles_and_the_cut_into_slabs_change_no_bit() {
         let camera = Camera::fit(Aabb::of_points([DVec3::ZERO, DVec3::ONE]));
         let aov = crate::film::Aov::ALL.to_vec();
         let settings = Settings { size: [70, 50], samples: 3, aov, ..Settings::default() };
         let view = View { camera: &camera, lights: &[], materials: &[], ghosts: None, settings: &settings };
-        let forward = tiles::cover(settings.window());
-        let mut shuffled = forward.clone();
-        shuffled.sort_by_key(|t| crate::num::hash::mix(u64::from(t.x) << 32 | u64::from(t.y)));
-        let a = render_tiles(&Screen, &view, &Progress::default(), forward).unwrap();
-        let b = render_tiles(&Screen, &view, &Progress::default(), shuffled).unwrap();
+        let by_hash = |tiles: &mut Vec<Tile>| {
+            tiles.sort_by_key(|t| crate::num::hash::mix(u64::from(t.x) << 32 | u64::from(t.y)));
+        };
+        let a = render_scenery(&Screen, &view, &Progress::default()).unwrap();
+        let shuffled = Cut { order: by_hash, ..Cut::default() };
+        assert_eq!(a, render_whole(&Screen, &view, &Progress::default(), &shuffled).unwrap());
+        // A slab for each row of tiles.
+        let b = render_whole(&Screen, &view, &Progress::default(), &Cut { slab_bytes: 1, ..shuffled }).unwrap();
         assert_eq!(a, b);
     }
 }

@@ -6,6 +6,7 @@
 //! parts of the picture that are the same whatever is cropped.
 
 use super::integrator::Painter;
+use super::Progress;
 use super::layers::{self, Sums};
 use super::sampler::PixelSampler;
 use super::scenery::{Scenery, Seen, Tracer};
@@ -77,13 +78,13 @@ impl<S: Scenery> Painter<'_, S> {
         }
     }
 
-    /// Paints a part of a tile; `cell` is what is judged together with it.
+    /// Paints a part of a tile, or anything where the render is given up; `cell` is what is judged together with it.
     pub(super) fn part(
         &self,
         tracer: &mut Tracer<S>,
         part: &Tile,
         cell: &Tile,
-        tile: &Tile,
+        (tile, progress): (&Tile, &Progress),
         film: &mut Film,
     ) {
         let most = self.view.settings.samples;
@@ -93,13 +94,13 @@ impl<S: Scenery> Painter<'_, S> {
             if part.has(at) && !film.layers.is_empty() {
                 pixel.centre = Some(self.centre(tracer, at, tile, film));
             }
-            self.sample(tracer, at, pixel, first, |i| (4 * u64::from(i) / u64::from(first)) as usize);
+            self.sample(tracer, at, (pixel, first), progress, |i| (4 * u64::from(i) / u64::from(first)) as usize);
         }
         while let Some(open) = self.open(cell, &pixels) {
             for ((at, pixel), _) in cell.each().zip(&mut pixels).zip(open).filter(|(_, open)| *open) {
                 let (from, to) = (pixel.taken, most.min(2 * pixel.taken));
                 pixel.fold();
-                self.sample(tracer, at, pixel, to, |i| if i - from < from / 2 { 2 } else { 3 });
+                self.sample(tracer, at, (pixel, to), progress, |i| if i - from < from / 2 { 2 } else { 3 });
             }
         }
         for (at, pixel) in cell.each().zip(&pixels).filter(|(at, _)| part.has(*at)) {
@@ -147,8 +148,8 @@ impl<S: Scenery> Painter<'_, S> {
         &self,
         tracer: &mut Tracer<S>,
         [x, y]: [u32; 2],
-        pixel: &mut Pixel,
-        to: u32,
+        (pixel, to): (&mut Pixel, u32),
+        progress: &Progress,
         quarter: impl Fn(u32) -> usize,
     ) {
         let settings = self.view.settings;
@@ -156,6 +157,9 @@ impl<S: Scenery> Painter<'_, S> {
         let before = tracer.scratch.solid.counts;
         let sampler = PixelSampler::new(settings.seed, x, y);
         for i in pixel.taken..to {
+            if progress.gives_up() {
+                break;
+            }
             let sample = sampler.sample(i);
             // A single sample is what `probe` sees: it goes through the middles of pixel and lens.
             let ([dx, dy], weight) = if single { ([0.5; 2], 1.0) } else { self.spread.place(sample.pair(0)) };

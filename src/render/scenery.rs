@@ -2,6 +2,7 @@
 //! the counting of rays.
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 use crate::csg::{Bundle, Scratch, Spans};
 use crate::geom::{Aabb, Beam, Interval, Ray};
@@ -115,7 +116,8 @@ impl Scenery for World {
 }
 
 /// How many rays were traced.
-#[derive(Clone, Copy, Default, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, Default, PartialEq, Eq, Debug, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Rays {
     /// From the eye.
     pub camera: u64,

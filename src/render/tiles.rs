@@ -2,7 +2,7 @@
 
 /// Side of a tile, pixels: rays of a tile stay close together, and 800 x 600 pixels still give every thread of
 /// a large machine several tiles.
-const SIDE: u32 = 32;
+pub const SIDE: u32 = 32;
 
 /// Side of the parts of a tile, pixels.
 const PART: u32 = 8;
@@ -72,6 +72,12 @@ fn cells([x0, y0, x1, y1]: [u32; 4], side: u32) -> impl Iterator<Item = Tile> {
     )
 }
 
+/// How many tiles [`cover`] gives.
+pub fn count([x0, y0, x1, y1]: [u32; 4]) -> u64 {
+    let cells = |from: u32, to: u32| if from < to { u64::from(to.div_ceil(SIDE) - from / SIDE) } else { 0 };
+    cells(x0, x1) * cells(y0, y1)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -79,6 +85,7 @@ mod tests {
     #[test]
     fn tiles_cover_every_pixel_once() {
         let window = [5, 31, 100, 65];
+        assert_eq!(count(window), cover(window).len() as u64);
         let mut seen = vec![0; 100 * 65];
         for tile in cover(window).into_iter().flat_map(Tile::parts) {
             for y in tile.y..tile.y + tile.size[1] {

@@ -32,6 +32,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
+use serde::{Deserialize, Serialize};
 
 pub use chord::Chord;
 pub use crossing::{Answer, Crossing};
@@ -173,7 +174,8 @@ pub struct Scratch {
 }
 
 /// Counts of work. Sums of them do not depend on the order of work.
-#[derive(Clone, Copy, Default, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Default, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Counts {
     /// Solves of plane and polynomial, whatever for.
     pub projections: u64,
