@@ -38,12 +38,18 @@ pub enum Fault {
     Missing,
     /// This program is wrong (70).
     Internal,
+    /// There is not enough memory (71).
+    Memory,
     /// An output cannot be created (73).
     Output,
     /// Reading or writing failed on the way (74).
     Io,
+    /// Stopped, with a state that goes on (75).
+    Stopped,
     /// Something the settings do not allow (77).
     Refused,
+    /// Stopped by a signal of this number, with nothing kept (128 and the number).
+    Signal(u8),
 }
 
 impl Fault {
@@ -55,9 +61,12 @@ impl Fault {
             Fault::Input => 65,
             Fault::Missing => 66,
             Fault::Internal => 70,
+            Fault::Memory => 71,
             Fault::Output => 73,
             Fault::Io => 74,
+            Fault::Stopped => 75,
             Fault::Refused => 77,
+            Fault::Signal(number) => 128 + number,
         }
     }
 }

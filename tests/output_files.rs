@@ -45,7 +45,7 @@ fn an_exr_is_linear_and_the_same_bytes_every_time() {
     };
     let first = bytes("a.exr", 0.0);
     assert_eq!(first, bytes("another-name.exr", 3.0));
-    for word in ["another", "capDate", "utcOffset", "owner\0", "comments", "software"] {
+    for word in ["another", "capDate", "utcOffset", "owner\0", "comments"] {
         assert!(!first.windows(word.len()).any(|w| w == word.as_bytes()), "the file says {word}");
     }
 }

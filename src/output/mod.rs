@@ -2,7 +2,10 @@
 //! file of that name stays as it was.
 
 mod exr;
+mod growing;
 mod png;
+mod rows;
+pub mod state;
 pub mod tone;
 mod whole;
 
@@ -10,9 +13,11 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-pub use self::exr::{read_exr, write_exr};
-pub use self::png::{read_png, write_png, write_rgb};
-pub use whole::{Sink, write_whole};
+pub use self::exr::{ExrRows, read_exr, write_exr};
+pub use self::png::{PngRows, read_png, write_png, write_rgb};
+pub use growing::{Growing, partial};
+pub use rows::{Encode, Picture, about, settings_line};
+pub use whole::{Old, Sink, write_whole};
 
 use crate::film::Film;
 use crate::shot::Settings;
@@ -83,11 +88,20 @@ pub fn check(path: &Path, inputs: &[PathBuf]) -> Result<(), OutputError> {
 
 /// Writes a film in the format that the suffix names.
 pub fn write(film: &Film, settings: &Settings, path: &Path) -> Result<(), OutputError> {
-    let format = Format::of(path).ok_or_else(|| OutputError::Suffix { path: path.to_owned() })?;
-    write_whole(path, |sink| match format {
-        Format::Png => write_png(film, settings.exposure, settings.tone, sink),
-        Format::Exr => write_exr(film, sink),
-    })
+    let aovs = film.layers.iter().map(|layer| layer.aov).collect();
+    let mut file = Growing::begin(path, &Picture { size: film.size, aovs, ..Picture::new(settings) })?;
+    file.rows(film)?;
+    file.finish(Old::Replaced)
+}
+
+/// Makes sure that no file has this name.
+pub fn check_free(path: &Path) -> Result<(), OutputError> {
+    // A link that leads nowhere has the name, too.
+    if path.symlink_metadata().is_ok() { Err(exists(path)) } else { Ok(()) }
+}
+
+fn exists(path: &Path) -> OutputError {
+    OutputError::Create { path: path.to_owned(), why: "it exists, and `--no-clobber` keeps it".to_owned() }
 }
 
 /// Whether two names lead to one file.

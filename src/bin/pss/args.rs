@@ -2,6 +2,7 @@
 
 use std::ffi::OsString;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args as Group, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
@@ -304,6 +305,15 @@ pub struct RenderArgs {
     /// Chooses the noise
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
+    /// Go on with what a stopped render of the same picture left
+    #[arg(long)]
+    pub resume: bool,
+    /// Stop after so many seconds and keep what there is for `--resume`
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub time_limit: Option<Duration>,
+    /// Refuse to write where a file is
+    #[arg(long)]
+    pub no_clobber: bool,
     /// Say at the end what was done, on standard error
     #[arg(long)]
     pub stats: bool,
@@ -371,6 +381,11 @@ const MAX_THREADS: usize = 4096;
 fn threads(text: &str) -> Result<usize, String> {
     let n: usize = text.parse().map_err(|_| "not a whole number".to_owned())?;
     if n <= MAX_THREADS { Ok(n) } else { Err(format!("at most {MAX_THREADS}")) }
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let s: Option<f64> = text.parse().ok();
+    s.and_then(|s| Duration::try_from_secs_f64(s).ok()).ok_or_else(|| "a number of seconds".to_owned())
 }
 
 fn define(text: &str) -> Result<(String, String), String> {

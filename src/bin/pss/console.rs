@@ -6,6 +6,7 @@ use std::sync::Mutex;
 
 use pss::diag::{Diagnostic, Fault};
 use pss::output::OutputError;
+use pss::output::state::ClaimError;
 use pss::render::RenderError;
 use pss::report;
 use pss::source::SourceMap;
@@ -50,11 +51,30 @@ impl From<OutputError> for Failure {
     }
 }
 
+impl From<ClaimError> for Failure {
+    fn from(e: ClaimError) -> Failure {
+        let (code, fault) = match &e {
+            ClaimError::Taken { .. } => ("E0612", Fault::Output),
+            ClaimError::Io { .. } => ("E0608", Fault::Output),
+            ClaimError::Other { .. } => ("E0610", Fault::Input),
+        };
+        let diagnostic = Diagnostic::error(code, e.to_string()).fault(fault);
+        Failure::from(match &e {
+            ClaimError::Other { parts, .. } => {
+                let words: Vec<&str> = parts.iter().map(|part| part.word()).collect();
+                let differ = diagnostic.note(format!("not the same: {}", words.join(", ")));
+                differ.help("leave out `--resume` to begin anew")
+            }
+            _ => diagnostic,
+        })
+    }
+}
+
 impl From<RenderError> for Failure {
     fn from(e: RenderError) -> Failure {
         match e {
             RenderError::NoRoom(_) => {
-                let diagnostic = Diagnostic::error("E0707", e.to_string()).fault(Fault::Refused);
+                let diagnostic = Diagnostic::error("E0707", e.to_string()).fault(Fault::Memory);
                 Failure::from(
                     diagnostic.help("make the picture smaller, or render it in parts with `--crop`"),
                 )

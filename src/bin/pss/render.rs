@@ -2,20 +2,23 @@
 
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use pss::diag::{Diagnostic, Fault};
-use pss::film::Film;
-use pss::output::{self, Format};
+use pss::output::{self, Format, Old, Picture};
 use pss::prepare::{Inputs, Options};
-use pss::render::{Progress, Rendered};
-use pss::shot::{Settings, Shot};
+use pss::render::{Done, Progress};
 
 use crate::args::{ProgressMode, RenderArgs};
-use crate::console::{self, Console, Failure};
+use crate::console::{Console, Failure};
+use crate::identity::Identities;
+use crate::keeping::Keeping;
 use crate::load::{self, Loaded};
+use crate::making::Making;
 use crate::progress;
 use crate::stats::{Stages, Stats};
+use crate::stop::Stoppable;
 use crate::{deps, watch};
 
 /// Runs the command.
@@ -46,18 +49,21 @@ pub fn once(args: &RenderArgs, inputs: &Inputs, console: &Console) -> Result<(),
     }
     for path in outputs.iter().filter(|path| !is_stdout(path)).chain(&args.stats_json).chain(&args.deps) {
         output::check(path, &loaded.inputs)?;
+        if args.no_clobber {
+            output::check_free(path)?;
+        }
     }
+    let making = begin(args, &outputs, &loaded, console)?;
     let rendering = Instant::now();
-    let rendered = render(args, &loaded.shot)?;
+    let (making, done) = render(args, (&outputs, &loaded), making, start, console)?;
     let rendering = rendering.elapsed();
     let writing = Instant::now();
-    for path in &outputs {
-        write(&rendered.film, &loaded.shot.settings, path)?;
-    }
+    making.finish(if args.no_clobber { Old::Kept } else { Old::Replaced })?;
+    let layers = loaded.shot.settings.aov.len();
     let Loaded { parsing, loading, preparing, scans, inputs, sources, .. } = loaded;
     let files = inputs.len() - sources.files().filter(|f| f.path.is_some()).count();
     let stages = Stages { parsing, loading, preparing, rendering, writing: writing.elapsed() };
-    let stats = Stats::new(start.elapsed(), &stages, &rendered, (files, &scans));
+    let stats = Stats::new(start.elapsed(), &stages, (&done.work, layers), (files, &scans));
     if let Some(path) = &args.stats_json {
         output::write_whole(path, |sink| io::Write::write_all(sink, stats.json().as_bytes()))?;
     }
@@ -80,11 +86,79 @@ fn nothing() -> Diagnostic {
     warning.help("draw something: `draw sphere(r: 1)`")
 }
 
-fn render(args: &RenderArgs, shot: &Shot) -> Result<Rendered, Failure> {
-    let progress = Progress::default();
+/// Begins the outputs. Where there is a file among them and the picture is made but once, tiles are kept beside the first.
+fn begin(
+    args: &RenderArgs,
+    outputs: &[PathBuf],
+    loaded: &Loaded,
+    console: &Console,
+) -> Result<Making, Failure> {
+    let settings = &loaded.shot.settings;
+    let mut picture = Picture::new(settings);
+    let Some(first) = outputs.iter().find(|path| !is_stdout(path)) else {
+        return Making::begin(outputs, &picture, None);
+    };
+    let identities = Arc::new(Identities::new(args, settings, &loaded.sources, &loaded.inputs));
+    picture.about = output::about(&identities.scene(), &output::settings_line(settings));
+    let keeping = match args.watch {
+        true => None,
+        false => Some(Keeping::new(args, first, settings, &identities, console)?),
+    };
+    Making::begin(outputs, &picture, keeping)
+}
+
+/// Renders, as long as nothing stops it.
+fn render(
+    args: &RenderArgs,
+    (outputs, loaded): (&[PathBuf], &Loaded),
+    mut making: Making,
+    start: Instant,
+    console: &Console,
+) -> Result<(Making, Done), Failure> {
+    let progress = Arc::new(Progress::default());
+    let time = args.time_limit.map(|limit| limit.saturating_sub(start.elapsed()));
+    let stoppable = Stoppable::new(&progress, making.litter(), time);
     let mode = if args.quiet { ProgressMode::None } else { args.progress };
-    let render = || pss::render::render(shot, &progress);
-    Ok(progress::show(mode, shot.settings.pixels(), &|| progress.done(), render)?)
+    let shot = &loaded.shot;
+    let render = || pss::render::render_for(shot, &progress, &mut making);
+    let done = progress::show(mode, shot.settings.pixels(), &|| progress.done(), render);
+    let trouble = making.keeping.as_ref().and_then(Keeping::trouble);
+    if !args.quiet {
+        console.show(trouble.as_slice(), &loaded.sources);
+    }
+    let done = done?;
+    match making.failure.take() {
+        Some(e) => Err(e.into()),
+        None if done.missing == 0 => Ok((making, done)),
+        None => {
+            let taken = [&loaded.inputs[..], outputs].concat();
+            Err(stopped(&done, making, stoppable.signal(), &taken))
+        }
+    }
+}
+
+/// Leaves what there is of a picture of which tiles are missing.
+fn stopped(done: &Done, mut making: Making, signal: Option<u8>, taken: &[PathBuf]) -> Failure {
+    let kept = making.keeping.as_ref().is_some_and(Keeping::is_kept);
+    let there = format!("{} of {} tiles are done", done.tiles - done.missing, done.tiles);
+    let mut failure = match &done.failed {
+        Some(e) => {
+            let mut failure = Failure::from(e.clone());
+            failure.diagnostics[0].notes.push(there);
+            failure
+        }
+        None => {
+            let by = signal.map_or("the time limit", |number| if number == 2 { "an interrupt" } else { "a signal" });
+            let fault = signal.filter(|_| !kept).map_or(Fault::Stopped, Fault::Signal);
+            Failure::from(Diagnostic::error("E0611", format!("stopped by {by}: {there}")).fault(fault))
+        }
+    };
+    let diagnostic = &mut failure.diagnostics[0];
+    diagnostic.notes.extend(making.finish_partial(taken));
+    if kept && diagnostic.help.is_none() {
+        diagnostic.help = Some("the same command with `--resume` goes on".into());
+    }
+    failure
 }
 
 /// The files to write, each once: by default the scene's name with .png, in the working directory.
@@ -106,6 +180,9 @@ fn outputs(args: &RenderArgs) -> Result<Vec<PathBuf>, Failure> {
     if args.watch && (outputs.iter().any(|path| is_stdout(path)) || load::is_stdin(&args.scene.scene)) {
         return Err(usage("`--watch` wants files: a scene to look at, and a picture to write again"));
     }
+    if args.watch && (args.resume || args.no_clobber || args.time_limit.is_some()) {
+        return Err(usage("`--watch` makes the picture anew each time: nothing is resumed, limited or left as it was"));
+    }
     if outputs.iter().any(|path| is_stdout(path)) && io::stdout().is_terminal() {
         return Err(usage("a picture would only confuse the terminal; send standard output elsewhere"));
     }
@@ -119,14 +196,4 @@ fn outputs(args: &RenderArgs) -> Result<Vec<PathBuf>, Failure> {
 
 fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
-}
-
-fn write(film: &Film, settings: &Settings, path: &Path) -> Result<(), Failure> {
-    if !is_stdout(path) {
-        return Ok(output::write(film, settings, path)?);
-    }
-    let mut bytes = Vec::new();
-    output::write_png(film, settings.exposure, settings.tone, &mut bytes)
-        .map_err(|source| output::OutputError::Write { path: path.to_owned(), source })?;
-    console::print(&bytes).map(drop)
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::time::Duration;
 
 use pss::prepare::ScanReport;
-use pss::render::Rendered;
+use pss::render::Work;
 use pss::solid::Body;
 use serde::Serialize;
 
@@ -126,14 +126,14 @@ impl ScanNotes {
 }
 
 impl Stats {
-    /// Gathers what is known; `wall` is the time since the start, `files` how many were opened beside the scene.
+    /// Gathers what is known; `wall` is the time since the start, `layers` how many were kept, `files` how many were opened beside the scene.
     pub fn new(
         wall: Duration,
         stages: &Stages,
-        rendered: &Rendered,
+        (work, layers): (&Work, usize),
         (files, scans): (usize, &[ScanReport]),
     ) -> Stats {
-        let (rays, counts) = (rendered.rays, rendered.counts);
+        let Work { rays, counts } = *work;
         Stats {
             wall_s: wall.as_secs_f64(),
             cpu_s: system::cpu_seconds(),
@@ -165,7 +165,7 @@ impl Stats {
                 bad_leaves: counts.bad_leaves,
             },
             files,
-            layers: rendered.film.layers.len(),
+            layers,
             scans: scans.iter().map(ScanNotes::new).collect(),
         }
     }

@@ -356,6 +356,30 @@ pub const CODES: &[Code] = &[
         "Put what both need into a file of its own, and import that.",
         ["import \"scene.pss\"\ndraw sphere(r: 1)", "draw sphere(r: 1)"],
     ),
+    code(
+        "E0610",
+        "What is kept of a stopped render is of another picture.",
+        "A render goes on only with the same scene, files, settings and program. Leave out `--resume` to begin anew.",
+        [
+            "$ pss render scene.pss -o a.png --size 8x6 --quiet --time-limit 0\n$ pss render scene.pss -o a.png --size 9x6 --resume\ndraw sphere(r: 1)",
+            "$ pss render scene.pss -o a.png --size 8x6 --quiet --time-limit 0\n$ pss render scene.pss -o a.png --size 8x6 --resume\ndraw sphere(r: 1)",
+        ],
+    ),
+    code(
+        "E0611",
+        "The render was stopped: by a signal, or by `--time-limit`.",
+        "What there is stands beside the picture's place, with `.partial` in its name; `--resume` goes on.",
+        [
+            "$ pss render scene.pss -o a.png --size 8x6 --time-limit 0\ndraw sphere(r: 1)",
+            "$ pss render scene.pss -o a.png --size 8x6\ndraw sphere(r: 1)",
+        ],
+    ),
+    code(
+        "E0612",
+        "Another run is making this picture.",
+        "Wait for it, or write to another file.",
+        NONE,
+    ),
     code("E0701", "Something nests too deep, or is too large to be read.", "Name parts with `let`.", NONE),
     code("E0702", "Something is understood but not carried out yet.", "Write the scene without it.", NONE),
     code(

@@ -139,4 +139,13 @@ pub const CODES: &[Code] = &[
             "$ pss render scene.pss --size 8x6\nlet ball = sphere(r: 1)\ndraw ball",
         ],
     ),
+    code(
+        "W0204",
+        "What is kept of a stopped render is given up, damaged, or cannot be kept.",
+        "With `--resume` a render goes on where it was stopped; without, it begins anew.",
+        [
+            "$ pss render scene.pss -o a.png --size 8x6 --quiet --time-limit 0\n$ pss render scene.pss -o a.png --size 8x6\ndraw sphere(r: 1)",
+            "$ pss render scene.pss -o a.png --size 8x6 --quiet --time-limit 0\n$ pss render scene.pss -o a.png --size 8x6 --resume\ndraw sphere(r: 1)",
+        ],
+    ),
 ];
