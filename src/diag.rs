@@ -161,6 +161,11 @@ impl Diagnostic {
         }
     }
 
+    /// Sets the way out as an edit, where a word is surely another one, mistyped.
+    pub fn fix_slip(self, span: Span, word: &str, meant: &str) -> Diagnostic {
+        if is_slip(word, meant) { self.fix(span, meant) } else { self }
+    }
+
     /// Adds a fact.
     pub fn note(mut self, note: impl Into<String>) -> Diagnostic {
         self.notes.push(note.into());
@@ -208,18 +213,62 @@ pub fn shown(word: &str) -> String {
     each.collect()
 }
 
+/// Letters of a name that has a nearest one, at most: what is longer is no slip of the hand.
+const LONGEST_NAME: usize = 64;
+
 /// The known name nearest to `name`, for "did you mean": at most a third of its letters wrong, missing,
-/// too many or in each other's place (optimal string alignment), the first of several.
+/// too many or in each other's place (optimal string alignment), the first of several; none for a name of more than
+/// 64 letters. Its time grows with the number of names: whoever has many of them looks seldom.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let limit = (name.chars().count() / 3).max(1);
-    // A name all of whose letters differ is not near.
-    let letters = |k: &str| name.chars().count().max(k.chars().count());
+    if LONGEST_NAME < name.len() {
+        return None;
+    }
+    let letters = name.chars().count();
+    let limit = (letters / 3).max(1);
     known
         .into_iter()
-        .map(|k| (strsim::osa_distance(name, k), k))
-        .filter(|(d, k)| *d <= limit && *d < letters(k))
-        .min_by_key(|(d, _)| *d)
-        .map(|(_, k)| k)
+        .filter(|k| k.len() <= 4 * LONGEST_NAME)
+        .map(|k| (k, k.chars().count()))
+        .filter(|(_, others)| others.abs_diff(letters) <= limit)
+        .map(|(k, others)| (strsim::osa_distance(name, k), others, k))
+        // A name all of whose letters differ is not near.
+        .filter(|(d, others, _)| *d <= limit && *d < letters.max(*others))
+        .min_by_key(|(d, ..)| *d)
+        .map(|(.., k)| k)
+}
+
+/// Whether a name is surely another one, mistyped: one letter within it is missing, too many, or has changed places with
+/// the next. What begins or ends otherwise, or has another letter or digit, may be meant as it stands: `acosh`, `legs`, `wall2`.
+pub fn is_slip(name: &str, known: &str) -> bool {
+    let (a, b): (Vec<char>, Vec<char>) = (name.chars().collect(), known.chars().collect());
+    let (short, long) = if a.len() <= b.len() { (&a, &b) } else { (&b, &a) };
+    let same = short.iter().zip(long).take_while(|(x, y)| x == y).count();
+    if short.len() < 4 || long.len() < 5 || same == 0 {
+        return false;
+    }
+    match long.len() - short.len() {
+        0 => {
+            let swapped =
+                same + 1 < long.len() && short[same] == long[same + 1] && short[same + 1] == long[same];
+            swapped
+                && short[same + 2..] == long[same + 2..]
+                && short[same].is_alphabetic()
+                && long[same].is_alphabetic()
+        }
+        1 => same < short.len() && short[same..] == long[same + 1..] && long[same].is_alphabetic(),
+        _ => false,
+    }
+}
+
+/// So many of some names, each as a message shows it, and how many there are beside.
+pub fn listed<'a>(names: impl IntoIterator<Item = &'a str>, show: impl Fn(&str) -> String) -> String {
+    const MOST: usize = 40;
+    let mut names = names.into_iter();
+    let first: Vec<String> = names.by_ref().take(MOST).map(show).collect();
+    match names.count() {
+        0 => first.join(" "),
+        more => format!("{} and {more} more", first.join(" ")),
+    }
 }
 
 #[cfg(test)]
@@ -233,5 +282,28 @@ mod tests {
         assert_eq!(nearest("bux", known), Some("box"));
         assert_eq!(nearest("obx", known), Some("box"));
         assert_eq!(nearest("torus", known), None);
+        assert_eq!(nearest(&"a".repeat(100_000), ["a"]), None);
+    }
+
+    #[test]
+    fn only_slips_of_the_hand_are_sure() {
+        for (name, known) in
+            [("spere", "sphere"), ("raduis", "radius"), ("spheere", "sphere"), ("shpere", "sphere")]
+        {
+            assert!(is_slip(name, known), "{name}");
+        }
+        let unsure = [
+            ("sqr", "sqrt"),
+            ("sign", "sin"),
+            ("i", "pi"),
+            ("acosh", "acos"),
+            ("wall1", "wall2"),
+            ("legs1", "legs"),
+        ];
+        for (name, known) in
+            unsure.into_iter().chain([("wheel", "wheels"), ("point_a", "point_b"), ("a12b3", "a21b3")])
+        {
+            assert!(!is_slip(name, known), "{name}");
+        }
     }
 }

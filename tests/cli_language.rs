@@ -56,6 +56,7 @@ fn dump_is_json_that_reads_back() {
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
     let dump = &ran.json_lines()[0];
     assert_eq!(dump["version"], 1);
+    assert!(dump["files"][0].as_str().is_some_and(|name| name.ends_with(".pss")), "{}", dump["files"]);
     let items: Vec<pss::lang::ast::Item> = serde_json::from_value(dump["items"].clone()).unwrap();
     assert_eq!(serde_json::to_value(&items).unwrap(), dump["items"]);
     let scene: pss::scene::Scene = serde_json::from_value(dump["scene"].clone()).unwrap();
@@ -80,6 +81,7 @@ fn every_scene_of_the_project_round_trips_through_json() {
         #[derive(serde::Serialize, serde::Deserialize)]
         struct Dump {
             version: u32,
+            files: Vec<String>,
             items: Vec<pss::lang::ast::Item>,
             scene: pss::scene::Scene,
         }

@@ -119,8 +119,17 @@ const MISTAKES: &[(&str, &str)] = &[
 fn said(text: &str) -> (String, usize) {
     let mut sources = SourceMap::default();
     let file = sources.add("scene.pss", None, text);
-    let read = pss::lang::read(&mut sources, file, &pss::prepare::catalog(), &[]);
-    let told = read.and_then(|(scene, _)| pss::prepare::prepare(&scene, &Default::default()));
+    let catalog = pss::prepare::catalog();
+    let reading = pss::lang::Reading {
+        catalog: &catalog,
+        defines: &[],
+        files: None,
+        geometry: None,
+        expects: true,
+        memory: pss::lang::MEMORY,
+    };
+    let read = pss::lang::read_with(&mut sources, file, &reading);
+    let told = read.and_then(|read| pss::prepare::prepare(&read.scene, &Default::default()));
     let errors = told.err().unwrap_or_default();
     (pss::report::text(&errors, &sources, false), errors.iter().filter(|e| e.is_error()).count())
 }
@@ -143,6 +152,17 @@ fn each_typical_mistake_gives_one_error_that_names_the_repair() {
     }
     let known = std::fs::read_to_string(path).unwrap_or_default();
     assert!(known == page, "the texts changed: run with PSS_BLESS=1 and read the difference");
+}
+
+#[test]
+fn what_may_be_meant_otherwise_has_no_edit() {
+    for text in UNSURE {
+        let mut sources = SourceMap::default();
+        let file = sources.add("scene.pss", None, *text);
+        let errors = pss::lang::read(&mut sources, file, &pss::prepare::catalog(), &[]).expect_err(text);
+        let (mended, count) = pss::diag::mended(text, file, &errors);
+        assert!(count == 0, "{text}\n{mended}");
+    }
 }
 
 /// An edit that a message brings is right: with it, and those of the errors that come to light, the mistake is gone or another
@@ -186,6 +206,10 @@ fn edits_are_put_into_the_text() {
         ("draw box(size: .5).rotate_z(45)", "draw box(size: 0.5).rotate_z(45deg)"),
         ("let a = 5 mm\nlet b = 2 == 2 && 1 == 1", "let a = 5mm\nlet b = 2 == 2 and 1 == 1"),
         ("linear = 5\nsphere(r: 5.)", "let linear = 5\ndraw sphere(r: 5.0)"),
+        ("let a = sin(pi / 2)", "let a = sin((pi / 2) * 1rad)"),
+        ("draw sphere(r: 1).with(red)", "draw sphere(r: 1).with(matte(#ff0000))"),
+        ("let a = 3;let b = 4;", "let a = 3 let b = 4"),
+        ("echo(3)", "print(3)"),
     ];
     for (scene, want) in cases {
         let mut text = scene.to_owned();

@@ -264,3 +264,73 @@ fn json_has_the_promised_fields() {
     let line = pss::report::json_line(&nowhere, &SourceMap::default());
     assert!(line.contains(r#""file":null"#) && !line.contains('\n'), "{line}");
 }
+
+/// The nearest names are sought for the errors that are shown, and not for words that nobody writes.
+#[test]
+fn thousands_of_unknown_names_take_no_time() {
+    let many: String = (0..5000).map(|i| format!("let a{i} = b{i}\n")).collect();
+    let known: String = (0..20_000).map(|i| format!("let abcdefgh{i} = 1\n")).collect();
+    let unknown: String = (0..2000).map(|i| format!("let x{i} = abcdefghi{i}\n")).collect();
+    let long = format!("fn f(i) = {}\nlet {} = 3", "a".repeat(100_000), "a".repeat(99_999));
+    let formals: String = (0..5000).map(|i| format!("abcdefgh{i}, ")).collect();
+    let calls: String = (0..2000).map(|i| format!("let y{i} = f(abcdefghi{i}: 1)\n")).collect();
+    for text in [many, format!("{known}{unknown}"), long, format!("fn f({formals}) = 1\n{calls}")] {
+        let start = std::time::Instant::now();
+        let (outcome, sources) = read_with(&text, &[]);
+        let errors = outcome.expect_err("unknown names");
+        pss::report::text(&errors, &sources, false);
+        let took = start.elapsed();
+        assert!(took.as_secs_f64() < 5.0, "{took:?} {}", &text[..40]);
+    }
+}
+
+/// A file of thousands of names by a name space, asked for thousands that it has not.
+#[test]
+fn thousands_of_unknown_members_take_no_time() {
+    struct Names;
+    impl pss::lang::Files for Names {
+        fn resolve(
+            &self,
+            written: &str,
+            _: &std::path::Path,
+            _: pss::source::Span,
+        ) -> Result<std::path::PathBuf, Diagnostic> {
+            Ok(written.into())
+        }
+        fn read(&self, _: &std::path::Path, _: pss::source::Span) -> Result<String, Diagnostic> {
+            Ok((0..20_000).map(|i| format!("let abcdefgh{i} = 1\n")).collect())
+        }
+    }
+    let asked: String = (0..2000).map(|i| format!("let x{i} = n.abcdefghi{i}\n")).collect();
+    let mut sources = SourceMap::default();
+    let file = sources.add("scene.pss", None, format!("import \"n.pss\" as n\n{asked}"));
+    let catalog = catalog();
+    let reading = Reading {
+        catalog: &catalog,
+        defines: &[],
+        files: Some(&Names),
+        geometry: None,
+        expects: false,
+        memory: pss::lang::MEMORY,
+    };
+    let start = std::time::Instant::now();
+    let errors = pss::lang::read_with(&mut sources, file, &reading).expect_err("unknown members");
+    assert_eq!(errors.len(), 2000);
+    assert!(
+        errors[0].help.as_deref().is_some_and(|help| help.starts_with("did you mean")),
+        "{:?}",
+        errors[0]
+    );
+    let took = start.elapsed();
+    assert!(took.as_secs_f64() < 5.0, "{took:?}");
+}
+
+#[test]
+fn items_end_with_their_last_token() {
+    let text = "param n = 3\n// a\nexpect n is 3\nprint n /* b */\n\nlet a = [\n1] // c\ndraw sphere(r: 1)\n";
+    let mut sources = SourceMap::default();
+    let file = sources.add("scene.pss", None, text);
+    let items = pss::lang::items(&sources, file).unwrap();
+    let texts: Vec<&str> = items.iter().map(|item| sources.text(item.at)).collect();
+    assert_eq!(texts, ["param n = 3", "expect n is 3", "print n", "let a = [\n1]", "draw sphere(r: 1)"]);
+}

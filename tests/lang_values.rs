@@ -142,3 +142,93 @@ fn what_has_no_end_is_told() {
     let told = complaints("let a = b\nlet b = f(1)\nfn f(x) = a + x", &[]);
     assert!(told.contains("E0407"), "{told}");
 }
+
+#[test]
+fn operators_act_on_vectors_part_by_part_and_with_a_number_on_each() {
+    assert_eq!(value("[1, 2] ** 2"), "[1, 4]");
+    assert_eq!(value("2 ** [1, 2]"), "[2, 4]");
+    assert_eq!(value("[7, 8] % 3"), "[1, 2]");
+    assert_eq!(value("[7, 8] % [3, 5]"), "[1, 3]");
+    assert_eq!(value("1 / [1, 2]"), "[1, 0.5]");
+    assert_eq!(value("[1, 2] ** [2, 3]"), "[1, 8]");
+    assert_eq!(value("1 + [1, 2]"), "[2, 3]");
+    assert_eq!(value("2 * [30deg, 60deg] - [0deg, 10deg]"), "[60deg, 110deg]");
+    assert_eq!(value("-[30deg, 60deg]"), "[-30deg, -60deg]");
+    assert_eq!(value("[30deg, 60deg] / 30deg"), "[1, 2]");
+    assert_eq!(value("sin([0deg, 90deg])"), "[0, 1]");
+    assert_eq!(value("asin([0, 1])"), "[0deg, 90deg]");
+    assert_eq!(value("atan2([0, 1], 0)"), "[0deg, 90deg]");
+    assert_eq!(value("mix([0, 2], [2, 4], 0.5)"), "[1, 3]");
+    assert_eq!(value("max([1deg, 5deg], 3deg)"), "[3deg, 5deg]");
+    assert_eq!(value("sum([30deg, 20deg])"), "50deg");
+    assert!(complaints("let a = [1, 2] + [1, 2, 3]", &[]).contains("vectors of one size are wanted"));
+    assert!(complaints("let a = 1 / [1, 0]", &[]).contains("E0504"));
+    assert!(complaints("let a = sin([30, 60])", &[]).contains("`30deg`"));
+}
+
+#[test]
+fn vectors_of_a_formula_follow_the_same_rules() {
+    let formula = |text: &str| {
+        format!(
+            "{:?}",
+            scene(&format!("draw implicit({text} <= 1, inside: box(size: 3))")).draws[0].shape.0.kind
+        )
+    };
+    for [vector, parts] in [
+        ["([x, y] ** 2)[0]", "x ** 2"],
+        ["(1 / [x, y])[0]", "1 / x"],
+        ["([x, y] % 3)[1]", "y % 3"],
+        ["(2 + [x, y])[0]", "2 + x"],
+    ] {
+        let steps = |text: String| text.matches("Two(").count() + text.matches("Power(").count();
+        assert!(steps(formula(parts)) <= steps(formula(vector)), "{vector}");
+    }
+}
+
+#[test]
+fn functions_of_numbers_are_values() {
+    assert_eq!(prints("let f = sin\nprint f(90deg)"), "1");
+    assert_eq!(prints("fn twice(f, x) = f(f(x))\nprint twice(sqrt, 16)"), "2");
+    assert_eq!(value("for f in [floor, ceil] { f(1.5) }"), "[1, 2]");
+    assert_eq!(value("max"), "max(a, b)");
+    let text = |f: &str| format!("let f = {f}\ndraw implicit(f(x) <= 1, inside: box(size: 3))");
+    let formula =
+        |f: &str| format!("{:?}", scene(&text(f)).draws[0].shape.0.kind).replace(char::is_numeric, "");
+    assert_eq!(formula("sqrt"), formula("fn(x) => sqrt(x)"));
+    assert!(complaints("let f = sphere", &[]).contains("E0410"));
+}
+
+#[test]
+fn lists_ranges_and_records_are_compared() {
+    assert_eq!(value("[1, 2, 3, 4, 5] == [1, 2, 3, 4, 5]"), "true");
+    assert_eq!(value("[1, 2, 3, 4, 5] == [1, 2, 3, 4]"), "false");
+    assert_eq!(value("[] == []"), "true");
+    assert_eq!(value("0..3 == 0..4"), "false");
+    assert_eq!(value("[[\"a\", 1], [#fff, 3deg]] != [[\"a\", 1], [#fff, 4deg]]"), "true");
+    assert!(complaints("let a = [1, \"b\"] == [1, 2]", &[]).contains("E0203"));
+    // Lists of lists of one list: the steps are counted.
+    let doubled: String = (0..40).map(|i| format!("let l{} = [l{i}, l{i}]\n", i + 1)).collect();
+    assert!(complaints(&format!("let l0 = [1, 2]\n{doubled}print l40 == l40"), &[]).contains("E0709"));
+}
+
+/// After the steps or the memory are spent nothing is evaluated any more: one error tells it.
+#[test]
+fn what_follows_the_last_step_is_not_told_of() {
+    let told = complaints(
+        "fn f(n) = if n == 0 { 0 } else { f(n - 1) + f(n - 1) }\nprint f(60)\nexpect 1 is 2\nprint 3\nlet a = f(70)",
+        &[],
+    );
+    assert_eq!(told.matches("E0709").count(), 1, "{told}");
+}
+
+#[test]
+fn parameters_and_loops_that_hide_words_are_warned_of() {
+    let told = complaints("fn f(box) = box\nlet a = for sin in 0..3 { sin }\nlet g = fn(pi) => pi", &[]);
+    assert_eq!(told.matches("W0201").count(), 3, "{told}");
+}
+
+#[test]
+fn channels_above_one_are_warned_of() {
+    let told = complaints("let a = rgb(255, 0.5, 1)", &[]);
+    assert!(told.matches("W0205").count() == 1 && told.contains("`#ff8000`"), "{told}");
+}

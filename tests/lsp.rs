@@ -342,6 +342,21 @@ fn completion_knows_what_may_stand_where() {
     let methods = at("draw sphere(r: 1).");
     assert!(has(&methods, "move") && has(&methods, "with") && !has(&methods, "sphere"), "{methods:?}");
     assert_eq!(at("draw lib.w"), ["wheel", "axle"]);
+    // After a point stands what may follow it: parts of a vector or of bounds, methods of a shape, nothing of a number.
+    for vector in ["let v = [1, 2, 3]\nlet w = v\nprint w.", "print [1, 2].", "print bounds(part(1)).min."] {
+        assert_eq!(at(vector), ["x", "y", "z"], "{vector}");
+    }
+    for bounds in ["print bounds(sphere(r: 1)).", "let b = bounds(sphere(r: 1))\nprint b."] {
+        assert_eq!(at(bounds), ["min", "max", "size", "center"], "{bounds}");
+    }
+    assert_eq!(
+        at("print raycast(s, from: [0, 0, 0], dir: [0, 0, 1])[0]."),
+        ["t", "point", "normal", "entering"]
+    );
+    assert!(at("let n = 3\nprint n.").is_empty() && at("print volume(part(1)).").is_empty());
+    assert!(
+        has(&at("let s = sphere(r: 1).move([1, 0, 0])\ndraw s."), "move") && has(&at("fn f(s) = s."), "move")
+    );
     let args = at("draw sphere(");
     assert!(args.starts_with(&["r:".to_owned(), "at:".to_owned()]) && has(&args, "pi"), "{args:?}");
     let args = at("draw sphere(r: 1, ");

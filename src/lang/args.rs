@@ -1,14 +1,14 @@
 //! Which argument is which: by place, by name, missing, unknown, given twice. What a value must be is left
 //! to `check` and to the builtins themselves.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
-use super::ast::{Args, Expr};
+use super::ast::{Args, Expr, ExprKind};
 use super::budget::Budget;
 use super::habits;
 use super::queries::Geometry;
 use super::value::{Eval, Located};
-use crate::diag::{Diagnostic, nearest};
+use crate::diag::{Diagnostic, is_slip, nearest};
 use crate::scene::{Call, Decl, Kind};
 use crate::source::{SourceMap, Span};
 
@@ -55,10 +55,14 @@ pub fn formals(decl: &Decl) -> Vec<Formal<'_>> {
         .collect()
 }
 
+/// Arguments, or words, that a message lists.
+const SHOWN: usize = 40;
+
 /// How a call is written: `sphere(r:, at:)`, arguments by place without a colon.
 pub fn signature(word: &str, formals: &[Formal]) -> String {
     let one = |f: &Formal| if f.by_place { f.name.to_owned() } else { format!("{}:", f.name) };
-    format!("{word}({})", formals.iter().map(one).collect::<Vec<_>>().join(", "))
+    let more = if SHOWN < formals.len() { ", ..." } else { "" };
+    format!("{word}({}{more})", formals.iter().take(SHOWN).map(one).collect::<Vec<_>>().join(", "))
 }
 
 /// What is called and where.
@@ -84,7 +88,9 @@ impl<'a> Callee<'a> {
         for arg in args.list.iter().filter(|a| a.name.as_ref().is_none_or(|n| n.text != known)) {
             let i = match &arg.name {
                 Some(name) => self.formals.iter().position(|f| f.name == name.text).ok_or_else(|| {
-                    let known = nearest(&name.text, self.formals.iter().map(|f| f.name));
+                    // Of a function of thousands of arguments the first are looked at.
+                    let names = self.formals.iter().take(SHOWN).map(|f| f.name);
+                    let known = nearest(&name.text, names);
                     let told = format!("`{}` has no argument `{}`", self.word, name.text);
                     let error = Diagnostic::error("E0403", told).at(name.at, "unknown argument");
                     let habit = habits::instead(&name.text, habits::Place::Argument);
@@ -92,11 +98,14 @@ impl<'a> Callee<'a> {
                     if let Some(help) = habit.filter(|help| known.is_none() || *help != habits::WEAR) {
                         let same = habits::same(&name.text, habits::Place::Argument);
                         let same = same.filter(|same| self.formals.iter().any(|f| f.name == *same));
+                        // A centre is a point, not a question.
+                        let same = same.filter(|_| !matches!(arg.value.kind, ExprKind::Bool(_)));
                         return error
                             .fix_with(name.at, same)
                             .help(format!("{help}; it is `{}`", self.signature()));
                     }
-                    error.fix_with(name.at, known).help(match known {
+                    let sure = known.filter(|known| is_slip(&name.text, known));
+                    error.fix_with(name.at, sure).help(match known {
                         Some(known) => format!("did you mean `{known}`? It is `{}`", self.signature()),
                         None => format!("it is `{}`", self.signature()),
                     })
@@ -140,8 +149,11 @@ impl<'a> Callee<'a> {
             None if self.word == "rotate" => "turn around one axis after the other: \
                 `.rotate_x(90deg).rotate_z(45deg)`, or around any: `.rotate(axis: [1, 1, 0], by: 45deg)`"
                 .to_owned(),
-            None if self.formals.first().is_some_and(|f| f.name == "by") => {
+            None if self.formals.first().is_some_and(|f| matches!(f.name, "by" | "factor")) => {
                 format!("it is `{}`; a vector stands in square brackets: `[x, y, z]`", self.signature())
+            }
+            None if matches!(self.word, "min" | "max") => {
+                format!("it is `{}`; of three it is `{1}(a, {1}(b, c))`", self.signature(), self.word)
             }
             None => format!("it is `{}`", self.signature()),
         })
@@ -166,6 +178,8 @@ pub struct Bound<'a> {
     pub bars: &'a Cell<f64>,
     /// What is left of time and memory.
     pub budget: &'a Budget,
+    /// What it warns of.
+    pub warnings: &'a RefCell<Vec<Diagnostic>>,
 }
 
 impl Bound<'_> {
@@ -223,5 +237,6 @@ pub fn wanted(kind: Kind) -> String {
 
 /// Words as they are written in a scene.
 pub fn quoted(words: &[&str]) -> String {
-    words.iter().map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(", ")
+    let more = if SHOWN < words.len() { ", ..." } else { "" };
+    words.iter().take(SHOWN).map(|w| format!("\"{w}\"")).collect::<Vec<_>>().join(", ") + more
 }

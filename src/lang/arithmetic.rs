@@ -1,16 +1,18 @@
 //! What operators do to numbers, angles, vectors and truth values. Operators on shapes are left to `sets`.
 
 use super::ast::InfixOp;
-use super::value::{Eval, Located, Val};
+use super::budget::Budget;
+use super::value::{Eval, Located, Parts, Val};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 
 /// Applies an operator of numbers or truth values.
-pub fn infix(op: InfixOp, a: &Located, b: &Located, sign: Span) -> Eval<Val> {
+pub fn infix(op: InfixOp, a: &Located, b: &Located, sign: Span, budget: &Budget) -> Eval<Val> {
     let value = match op {
         InfixOp::Or | InfixOp::And => logic(op, a, b),
         InfixOp::Equal | InfixOp::Unequal => {
-            equal(&a.value, &b.value).map(|e| Val::Bool(e == (op == InfixOp::Equal)))
+            let same = equal(&a.value, &b.value, budget, sign)?;
+            same.map(|same| Val::Bool(same == (op == InfixOp::Equal)))
         }
         InfixOp::AtMost | InfixOp::AtLeast | InfixOp::Below | InfixOp::Above => order(op, &a.value, &b.value),
         InfixOp::Range => match (&a.value, &b.value) {
@@ -29,9 +31,8 @@ pub fn infix(op: InfixOp, a: &Located, b: &Located, sign: Span) -> Eval<Val> {
 pub fn negate(a: &Located, sign: Span) -> Eval<Val> {
     match &a.value {
         Val::Number(x) => Ok(Val::Number(-x)),
-        Val::Angle(x) => Ok(Val::Angle(-x)),
-        value => match value.numbers() {
-            Some(v) => Ok(Val::vector(v.into_iter().map(|x| -x), a.at)),
+        value => match value.parts() {
+            Some((parts, of_angles)) => Ok(parts.map(|x| -x).value(of_angles, a.at)),
             None => Err(Diagnostic::error("E0203", format!("`-` cannot be put before {}", value.kind()))
                 .at(sign, "wants a number, an angle or a vector")
                 .at(a.at, value.kind())
@@ -52,15 +53,38 @@ fn logic(op: InfixOp, a: &Located, b: &Located) -> Option<Val> {
     }
 }
 
-/// Whether two values of one kind are the same; `None` where that cannot be asked.
-pub fn equal(a: &Val, b: &Val) -> Option<bool> {
-    match (a, b) {
+/// Whether two values of one kind are the same; `None` where that cannot be asked. Each element of a list is a step.
+pub fn equal(a: &Val, b: &Val, budget: &Budget, at: Span) -> Eval<Option<bool>> {
+    Ok(match (a, b) {
         (Val::Number(a), Val::Number(b)) | (Val::Angle(a), Val::Angle(b)) => Some(a == b),
         (Val::Color(a), Val::Color(b)) => Some(a == b),
         (Val::Text(a, _), Val::Text(b, _)) => Some(a == b),
         (Val::Bool(a), Val::Bool(b)) => Some(a == b),
-        _ => Some(a.numbers()? == b.numbers()?),
-    }
+        (Val::Range(a, b, of), Val::Range(c, d, of_angles)) => Some((a, b, of) == (c, d, of_angles)),
+        (Val::List(a), Val::List(b)) if a.items.len() != b.items.len() => Some(false),
+        (Val::List(a), Val::List(b)) => {
+            let pairs = a.items.iter().zip(&b.items).map(|(a, b)| (&a.value, &b.value));
+            all_equal(pairs, budget, at)?
+        }
+        (Val::Record(a), Val::Record(b)) if a.names().ne(b.names()) => Some(false),
+        (Val::Record(a), Val::Record(b)) => {
+            let pairs = a.fields.iter().zip(&b.fields).map(|(a, b)| (&a.1, &b.1));
+            all_equal(pairs, budget, at)?
+        }
+        _ => None,
+    })
+}
+
+fn all_equal<'a>(
+    mut pairs: impl Iterator<Item = (&'a Val, &'a Val)>,
+    budget: &Budget,
+    at: Span,
+) -> Eval<Option<bool>> {
+    let differs = pairs.find_map(|(a, b)| match budget.spend(1, at).and_then(|()| equal(a, b, budget, at)) {
+        Ok(Some(true)) => None,
+        other => Some(other),
+    });
+    differs.unwrap_or(Ok(Some(true)))
 }
 
 fn order(op: InfixOp, a: &Val, b: &Val) -> Option<Val> {
@@ -77,54 +101,46 @@ fn order(op: InfixOp, a: &Val, b: &Val) -> Option<Val> {
 }
 
 fn numeric(op: InfixOp, a: &Val, b: &Val, at: Span) -> Option<Val> {
+    if let (Val::Number(a), Val::Number(b)) = (a, b) {
+        return Some(Val::Number(number(op, *a, *b)));
+    }
+    let ((a, a_is_angle), (b, b_is_angle)) = (a.parts()?, b.parts()?);
+    let of_angles = is_angle(op, a_is_angle, b_is_angle)?;
+    Some(a.zip(b, |x, y| number(op, x, y))?.value(of_angles, at))
+}
+
+/// Whether an operator makes an angle of two sides that are angles or not; `None` where it makes nothing of them.
+pub fn is_angle(op: InfixOp, a: bool, b: bool) -> Option<bool> {
     use InfixOp::{Add, Divide, Multiply, Remainder, Subtract};
     match (a, b) {
-        (Val::Number(a), Val::Number(b)) => Some(Val::Number(number(op, *a, *b)?)),
-        (Val::Angle(a), Val::Angle(b)) => match op {
-            Add | Subtract | Remainder => Some(Val::Angle(number(op, *a, *b)?)),
-            Divide => Some(Val::Number(a / b)),
-            _ => None,
-        },
-        (Val::Angle(a), Val::Number(b)) if matches!(op, Multiply | Divide) => {
-            Some(Val::Angle(number(op, *a, *b)?))
-        }
-        (Val::Number(a), Val::Angle(b)) if op == Multiply => Some(Val::Angle(a * b)),
-        (Val::Number(a), _) if op == Multiply => {
-            let b = b.numbers()?;
-            Some(Val::vector(b.into_iter().map(|x| a * x), at))
-        }
-        (_, Val::Number(b)) if matches!(op, Multiply | Divide) => {
-            let a = a.numbers()?;
-            Some(Val::vector(a.into_iter().filter_map(|x| number(op, x, *b)), at))
-        }
-        _ => {
-            let (a, b) = (a.numbers()?, b.numbers()?);
-            if a.len() != b.len() || op == InfixOp::Power {
-                return None;
-            }
-            Some(Val::vector(a.into_iter().zip(b).filter_map(|(a, b)| number(op, a, b)), at))
-        }
+        (false, false) => Some(false),
+        (true, true) if op == Divide => Some(false),
+        (true, true) => matches!(op, Add | Subtract | Remainder).then_some(true),
+        (true, false) => matches!(op, Multiply | Divide).then_some(true),
+        (false, true) => (op == Multiply).then_some(true),
     }
 }
 
 /// One operation; the remainder has the sign of the divisor.
-fn number(op: InfixOp, a: f64, b: f64) -> Option<f64> {
-    Some(match op {
+fn number(op: InfixOp, a: f64, b: f64) -> f64 {
+    match op {
         InfixOp::Add => a + b,
         InfixOp::Subtract => a - b,
         InfixOp::Multiply => a * b,
         InfixOp::Divide => a / b,
         InfixOp::Remainder => a - b * (a / b).floor(),
-        InfixOp::Power => a.powf(b),
-        _ => return None,
-    })
+        _ => a.powf(b),
+    }
 }
 
 /// Refuses numbers that are infinite or undefined, at the operator or function that made them.
 pub fn finite(value: &Val, made_by: &str, at: Span) -> Eval<()> {
     let fine = match value {
         Val::Number(x) | Val::Angle(x) => x.is_finite(),
-        Val::List(_) => value.numbers().is_none_or(|v| v.iter().all(|x| x.is_finite())),
+        Val::List(_) => match value.parts() {
+            Some((Parts::Many(v), _)) => v.iter().all(|x| x.is_finite()),
+            _ => true,
+        },
         _ => true,
     };
     if fine {
@@ -145,7 +161,14 @@ fn refuse(op: InfixOp, a: &Located, b: &Located, sign: Span) -> Diagnostic {
         .at(b.at, right);
     match op {
         InfixOp::Or | InfixOp::And => error.help("conditions are wanted; shapes are combined by `|` and `&`"),
-        InfixOp::Equal | InfixOp::Unequal if shapes => error.help("comparing shapes is not supported yet"),
+        InfixOp::Equal | InfixOp::Unequal if shapes => error.help("a shape is compared with a shape"),
+        InfixOp::AtMost | InfixOp::AtLeast | InfixOp::Below | InfixOp::Above
+            if left == "a vector" && right == "a vector" =>
+        {
+            error.help(
+                "vectors have no order: compare `length(a) < length(b)`, or a part of each, `a.x < b.x`",
+            )
+        }
         InfixOp::Add
         | InfixOp::Subtract
         | InfixOp::Equal
@@ -156,10 +179,14 @@ fn refuse(op: InfixOp, a: &Located, b: &Located, sign: Span) -> Diagnostic {
         | InfixOp::Above
             if left == "an angle" || right == "an angle" =>
         {
-            error.help("an angle has a unit: `30deg`")
+            error.help("an angle has a unit, `30deg`, and goes with angles alone")
         }
+        InfixOp::Equal | InfixOp::Unequal if left == right => error.help(format!("{left} has no equal")),
         InfixOp::Equal | InfixOp::Unequal => {
             error.help("values of one type are compared: a number is written without quotes")
+        }
+        _ if left == "an angle" && right == "an angle" => {
+            error.help("divide by a unit to get a number: `angle / 1deg`")
         }
         _ if left == "a vector" && right == "a vector" => error.help("vectors of one size are wanted"),
         _ => error.help("numbers or vectors are wanted"),

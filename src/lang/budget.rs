@@ -14,6 +14,10 @@ use crate::source::Span;
 /// Steps, at most.
 const MAX_STEPS: usize = 20_000_000;
 
+/// Names that are compared with unknown ones in messages, at most: of twenty thousand names those of the first twenty errors,
+/// and more are not shown.
+const MAX_LOOKS: usize = 400_000;
+
 /// Comparisons of names that make a step.
 pub const CHEAP: usize = 8;
 
@@ -29,6 +33,7 @@ const ARGUMENT: usize = 32 + size_of::<(String, Arg)>();
 #[derive(Debug)]
 pub struct Budget {
     steps: Cell<usize>,
+    looks: Cell<usize>,
     held: Arc<AtomicU64>,
     memory: u64,
 }
@@ -49,7 +54,7 @@ impl Drop for Held {
 impl Budget {
     /// A budget of so many bytes.
     pub fn new(memory: u64) -> Budget {
-        Budget { steps: Cell::new(0), held: Arc::default(), memory }
+        Budget { steps: Cell::new(0), looks: Cell::new(0), held: Arc::default(), memory }
     }
 
     /// Counts steps.
@@ -63,6 +68,15 @@ impl Budget {
             .at(at, "here it is given up")
             .help("does a loop or a recursion come to an end?")
             .into())
+    }
+
+    /// Whether a message may look through so many names; counts them.
+    pub fn may_look(&self, names: usize) -> bool {
+        let looks = self.looks.get().saturating_add(names);
+        if looks <= MAX_LOOKS {
+            self.looks.set(looks);
+        }
+        looks <= MAX_LOOKS
     }
 
     /// Takes bytes for good.

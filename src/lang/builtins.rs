@@ -41,3 +41,8 @@ pub const METHODS: &[Builtin] = methods::TABLE;
 pub fn functions() -> impl Iterator<Item = &'static Builtin> {
     sets::TABLE.iter().chain(maths::TABLE).chain(lists::TABLE).chain(queries::TABLE)
 }
+
+/// Those that are values too, by their names: functions of numbers.
+pub fn values() -> impl Iterator<Item = &'static Builtin> {
+    maths::TABLE.iter()
+}

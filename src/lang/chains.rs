@@ -80,12 +80,27 @@ pub fn refuse_mixed(signs: &[(InfixOp, Span)], source: &Source) -> Result<(), Bo
             let error = Diagnostic::error("E0201", told)
                 .at(other.1, "which comes first?")
                 .at(first.1, "the first operator")
-                .fix(source.trimmed(start, end), from_the_left(&sets, start, end, source));
+                .fix_with(
+                    source.trimmed(start, end),
+                    sure(&sets).then(|| from_the_left(&sets, start, end, source)).as_deref(),
+                );
             return Err(error.help(rewriting(&sets, start, end, source)).into());
         }
         start = last.map_or(end, |s| s.end);
     }
     Ok(())
+}
+
+/// Whether a chain reads from left to right for whoever knows programming languages too, where `-` binds before `&`, that
+/// before `^`, and that before `|`.
+fn sure(sets: &[(InfixOp, Span)]) -> bool {
+    let looseness = |op: InfixOp| match op {
+        InfixOp::Subtract => 0,
+        InfixOp::Intersect => 1,
+        InfixOp::Exclude => 2,
+        _ => 3,
+    };
+    sets.is_sorted_by_key(|(op, _)| looseness(*op))
 }
 
 /// Both readings of a short chain, the one from left to right of a longer one.

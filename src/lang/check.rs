@@ -8,7 +8,7 @@ use litemap::LiteMap;
 use super::args::{Callee, formals, quoted, wanted};
 use super::ast::{Args, Expr};
 use super::eval::Machine;
-use super::value::{Eval, Located, Val};
+use super::value::{Eval, Located, Stop, Val};
 use super::{formula, half_space};
 use crate::diag::{Diagnostic, nearest};
 use crate::geom::tolerance;
@@ -27,11 +27,23 @@ pub fn call_without(machine: &mut Machine, decl: &Decl, args: &Args, at: Span, k
     let mut checked = LiteMap::with_capacity(bound.iter().flatten().count());
     for (param, expr) in decl.params.iter().zip(bound) {
         if let Some(expr) = expr {
-            let value = argument(machine, param, expr)?;
+            let value =
+                argument(machine, param, expr).map_err(|stop| sized(stop, decl, param, machine, expr))?;
             checked.insert(param.name.to_owned(), Arg { value, at: expr.at });
         }
     }
     Ok(Call { word: decl.word.to_owned(), args: checked, at })
+}
+
+/// The error for a number where a corner is wanted, of what has a size too: `box(10)`.
+fn sized(stop: Stop, decl: &Decl, param: &Param, machine: &Machine, expr: &Expr) -> Stop {
+    let Stop::Told(mut error) = stop else { return stop };
+    let has_size = decl.params.iter().any(|p| p.name == "size" && p.kind == Kind::SizeOrVector);
+    if has_size && param.by_place && error.message.ends_with("found a number") {
+        error.help =
+            Some(format!("write `{}(size: {})`, or two corners", decl.word, machine.written(expr.at)).into());
+    }
+    Stop::Told(error)
 }
 
 fn argument(machine: &mut Machine, param: &Param, expr: &Expr) -> Eval<Value> {

@@ -2,10 +2,11 @@
 
 use super::args::quoted;
 use super::ast::{Expr, ExprKind, Param, PrefixOp, Word};
+use super::budget::Budget;
 use super::eval::Machine;
 use super::value::{Eval, Located, Stop, Val};
 use super::{arithmetic, parse, span, split};
-use crate::diag::{Diagnostic, Fault, nearest};
+use crate::diag::{Diagnostic, Fault, listed, nearest};
 use crate::source::{FileId, SourceMap};
 
 /// A `-D` whose text is in the source map.
@@ -27,8 +28,8 @@ pub fn add(sources: &mut SourceMap, defines: &[(String, String)]) -> Vec<Define>
 /// Errors for names that no parameter has.
 pub fn unknown(defines: &[Define], known: &[&str]) -> Vec<Diagnostic> {
     let stranger = |d: &&Define| !known.contains(&d.name.as_str());
+    let list = listed(known.iter().copied(), |n| format!("`{n}`"));
     let error = |d: &Define| {
-        let list = known.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ");
         let help = match nearest(&d.name, known.iter().copied()) {
             Some(near) => format!("did you mean `{near}`? The parameters are {list}"),
             None if known.is_empty() => "the scene has no parameters".to_owned(),
@@ -62,7 +63,7 @@ pub fn value(machine: &mut Machine, param: &Param, defines: &[Define]) -> Eval<V
         return Err(error.at(allowed.at, "backwards").help(help).into());
     }
     if let Some(allowed) = &allowed {
-        within(&default, name, allowed)?;
+        within(&default, name, allowed, &machine.budget)?;
     }
     let Some(define) = defines.iter().rev().find(|d| d.name == name) else {
         return Ok(default.value);
@@ -70,7 +71,7 @@ pub fn value(machine: &mut Machine, param: &Param, defines: &[Define]) -> Eval<V
     let given = given(machine, define, kind).and_then(|given| {
         typed(&given, name, kind, &define.value)?;
         if let Some(allowed) = &allowed {
-            within(&given, name, allowed)?;
+            within(&given, name, allowed, &machine.budget)?;
         }
         Ok(given.value)
     });
@@ -200,7 +201,7 @@ fn typed(given: &Located, name: &str, kind: &str, written: &str) -> Eval<()> {
 }
 
 /// Refuses a value that the parameter does not allow.
-fn within(given: &Located, name: &str, allowed: &Located) -> Eval<()> {
+fn within(given: &Located, name: &str, allowed: &Located, budget: &Budget) -> Eval<()> {
     let outside = |what: String, help: String| {
         let error = Diagnostic::error("E0503", format!("`{name}` is outside of what it allows"));
         Err(error.at(given.at, what).at(allowed.at, "allowed").help(help).into())
@@ -214,8 +215,11 @@ fn within(given: &Located, name: &str, allowed: &Located) -> Eval<()> {
             outside(format!("{x}{unit}"), format!("write a value from {lo}{unit} to {hi}{unit}"))
         }
         (value, Val::List(list)) => {
-            if list.items.iter().any(|i| arithmetic::equal(value, &i.value) == Some(true)) {
-                return Ok(());
+            budget.spend(list.items.len(), allowed.at)?;
+            for choice in &list.items {
+                if arithmetic::equal(value, &choice.value, budget, allowed.at)? == Some(true) {
+                    return Ok(());
+                }
             }
             let words: Option<Vec<&str>> = list
                 .items
@@ -223,10 +227,12 @@ fn within(given: &Located, name: &str, allowed: &Located) -> Eval<()> {
                 .map(|i| if let Val::Text(t, _) = &i.value { Some(&**t) } else { None })
                 .collect();
             let help = match (value, words) {
-                (Val::Text(text, _), Some(words)) => match nearest(text, words.iter().copied()) {
-                    Some(near) => format!("did you mean \"{near}\"?"),
-                    None => format!("write one of {}", quoted(&words)),
-                },
+                (Val::Text(text, _), Some(words)) if budget.may_look(words.len()) => {
+                    match nearest(text, words.iter().copied()) {
+                        Some(near) => format!("did you mean \"{near}\"?"),
+                        None => format!("write one of {}", quoted(&words)),
+                    }
+                }
                 _ => "write one of the listed values".to_owned(),
             };
             outside("not in the list".to_owned(), help)

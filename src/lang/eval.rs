@@ -1,7 +1,7 @@
 //! Expressions to values. Names are looked up here; operators are left to `arithmetic` and `sets`, calls of
 //! declared things to `check`, builtins to their table, items to `items`.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -34,6 +34,8 @@ pub struct Machine<'a> {
     pub unit: f64,
     /// The names of each file; `None` for one that failed or is not evaluated yet.
     pub names: Vec<HashMap<String, Option<Val>>>,
+    /// Of each file, whether names may be known in it that nobody could read.
+    pub partly: Vec<bool>,
     /// The file being evaluated.
     pub module: usize,
     /// The names around the expression being evaluated.
@@ -166,7 +168,8 @@ impl Machine<'_> {
     }
 
     /// A function of the names around it.
-    pub fn function(&self, function: &Arc<Function>, name: Option<&str>) -> Val {
+    pub fn function(&mut self, function: &Arc<Function>, name: Option<&str>) -> Val {
+        function.params.iter().for_each(|param| self.hides_builtin(&param.name));
         Val::Function(Arc::new(Closure {
             function: function.clone(),
             name: name.map(Into::into),
@@ -196,6 +199,9 @@ impl Machine<'_> {
         if let Some((_, value, _)) = builtins::CONSTANTS.iter().find(|(n, _, _)| *n == name) {
             return Ok(Val::Number(*value));
         }
+        if let Some(function) = builtins::values().find(|b| b.name == name) {
+            return Ok(Val::Builtin(function));
+        }
         if callable(self.catalog).any(|w| w == name) {
             return Err(Diagnostic::error("E0410", format!("`{name}` is called with arguments"))
                 .at(at, "no arguments")
@@ -208,7 +214,7 @@ impl Machine<'_> {
                 .help("scenes have finite numbers only")
                 .into());
         }
-        Err(self.unknown(name, at).into())
+        Err(self.unknown(name, at))
     }
 
     fn steps(&mut self, base: &Expr, steps: &[Step]) -> Eval<Val> {
@@ -226,16 +232,18 @@ impl Machine<'_> {
             let on = Located { value, at };
             value = match step {
                 Step::Call(args) => {
-                    let Val::Function(closure) = &on.value else {
-                        return Err(self.not_a_function(base, &on, args.at));
-                    };
                     at = at.to(args.at);
-                    self.call_function(closure, args, at)?
+                    match &on.value {
+                        Val::Function(closure) => self.call_function(closure, args, at)?,
+                        Val::Builtin(builtin) => self.builtin(builtin, None, args, at)?,
+                        _ => return Err(self.not_a_function(base, &on, args.at)),
+                    }
                 }
                 Step::Method(word, args) => {
                     at = at.to(args.at);
                     match member(&on, &word.text)? {
                         Some(Val::Function(closure)) => self.call_function(&closure, args, at)?,
+                        Some(Val::Builtin(builtin)) => self.builtin(builtin, None, args, at)?,
                         _ => self.method(on, word, args)?,
                     }
                 }
@@ -244,7 +252,7 @@ impl Machine<'_> {
                         at = at.to(word.at);
                         value
                     }
-                    None => return Err(no_member(&on, word).into()),
+                    None => return Err(no_member(&on, word, &self.budget).into()),
                 },
                 Step::Index(index, place) => {
                     at = at.to(*place);
@@ -298,12 +306,12 @@ impl Machine<'_> {
                 .help(format!("write it after what it changes: `shape.{}(...)`", method.name))
                 .into());
         }
-        Err(self.unknown(word, word_at).into())
+        Err(self.unknown(word, word_at))
     }
 
     fn method(&mut self, on: Located, word: &Word, args: &Args) -> Eval<Val> {
         let Some(builtin) = builtins::METHODS.iter().find(|b| b.name == word.text) else {
-            return Err(no_member(&on, word).into());
+            return Err(no_member(&on, word, &self.budget).into());
         };
         if !matches!(on.value, Val::Shape(_)) {
             let kind = on.value.kind();
@@ -322,8 +330,9 @@ impl Machine<'_> {
     fn builtin(&mut self, builtin: &Builtin, receiver: Option<Located>, args: &Args, at: Span) -> Eval<Val> {
         let callee = Callee { word: builtin.name, at, formals: builtin.formals };
         let exprs = callee.bind(args, "")?;
-        let values =
-            exprs.iter().map(|e| e.map(|e| self.located(e)).transpose()).collect::<Eval<Vec<_>>>()?;
+        let values = exprs.iter().map(|e| e.map(|e| self.located(e)).transpose()).collect::<Eval<Vec<_>>>();
+        let values = values.map_err(|stop| Machine::worn(builtin.name, stop))?;
+        let warnings = RefCell::default();
         let value = (builtin.call)(&Bound {
             callee,
             receiver,
@@ -333,7 +342,9 @@ impl Machine<'_> {
             materials: &self.materials,
             bars: &self.bars,
             budget: &self.budget,
+            warnings: &warnings,
         })?;
+        warnings.into_inner().into_iter().for_each(|warning| self.warn(warning));
         self.budget.keep(budget::made(&value), at)?;
         arithmetic::finite(&value, builtin.name, at)?;
         Ok(value)
@@ -393,7 +404,7 @@ impl Machine<'_> {
                 left = Located { value: Val::Bool(same == (*op == InfixOp::Equal)), at };
                 continue;
             }
-            left = Located { value: arithmetic::infix(*op, &left, &right, *sign)?, at };
+            left = Located { value: arithmetic::infix(*op, &left, &right, *sign, &self.budget)?, at };
         }
         Ok(left.value)
     }
@@ -402,7 +413,7 @@ impl Machine<'_> {
 /// A part of a vector or a record, or a name of a file.
 fn member(on: &Located, word: &str) -> Eval<Option<Val>> {
     Ok(match &on.value {
-        Val::Record(record) if record.failed.iter().any(|name| name == word) => return Err(Stop::Quiet),
+        Val::Record(record) if record.is_failed(word) => return Err(Stop::Quiet),
         Val::Record(record) => record.get(word).cloned(),
         Val::List(_) => {
             let axis = ["x", "y", "z", "w"].iter().position(|axis| *axis == word);

@@ -3,6 +3,7 @@
 use super::arithmetic;
 use super::ast::{Expect, Expr};
 use super::eval::Machine;
+use super::nearly::{Measure, distance, size};
 use super::print::text;
 use super::queries::Asked;
 use super::value::{Eval, Located, Val};
@@ -44,19 +45,33 @@ impl Machine<'_> {
             };
         };
         let right = self.located(right)?;
-        let room = self.room(expect, *nearly)?;
+        let room = self.room(expect, *nearly, [&left, &right])?;
         let holds = self.agree(&left, &right, room)?;
         Ok((!holds).then(|| self.differs(&left, &right, room, at)))
     }
 
-    fn room(&mut self, expect: &Expect, nearly: bool) -> Eval<Room> {
+    fn room(&mut self, expect: &Expect, nearly: bool, [left, right]: [&Located; 2]) -> Eval<Room> {
         let Some((expr, percent)) = &expect.within else {
             return Ok(if nearly { Room::Share(NEARLY) } else { Room::None });
         };
         let given = self.located(expr)?;
-        let x = match (&given.value, percent) {
-            (Val::Angle(x), false) => *x,
-            _ => given.number("within")?,
+        let [of, other] = [self.measure(left)?, self.measure(right)?];
+        if of.is_none() && other.is_none() {
+            let kind = left.value.kind();
+            let error = Diagnostic::error(
+                "E0802",
+                format!("{kind} is the same as another or not: nothing is `within`"),
+            );
+            let help = match left.value {
+                Val::Shape(_) => "compare what is measured: `expect volume(a) ~= volume(b) within 1%`",
+                _ => "remove the `within`",
+            };
+            return Err(error.at(given.at, "of what?").at(left.at, kind).help(help).into());
+        }
+        let x = if of == Some(Measure::Angle) && other == of && !percent {
+            given.angle("within", self.written(given.at))?
+        } else {
+            given.number("within")?
         };
         if x < 0.0 {
             let error = Diagnostic::error("E0503", "`within` is not below zero").at(given.at, format!("{x}"));
@@ -70,7 +85,9 @@ impl Machine<'_> {
         if let (Val::Shape(a_shape), Val::Shape(b_shape)) = (&a.value, &b.value) {
             return self.same_solid(a_shape, b_shape, a.at.to(b.at));
         }
-        if let Some(distance) = distance(&a.value, &b.value) {
+        let same_measure =
+            self.measure(a)?.is_some_and(|of| self.measure(b).is_ok_and(|other| other == Some(of)));
+        if let Some(distance) = distance(&a.value, &b.value).filter(|_| same_measure) {
             let allowed = match room {
                 Room::None => 0.0,
                 Room::Absolute(x) => x,
@@ -78,11 +95,23 @@ impl Machine<'_> {
             };
             return Ok(distance <= allowed);
         }
-        arithmetic::equal(&a.value, &b.value).ok_or_else(|| {
+        arithmetic::equal(&a.value, &b.value, &self.budget, b.at)?.ok_or_else(|| {
             let (left, right) = (a.value.kind(), b.value.kind());
             let error = Diagnostic::error("E0203", format!("{left} and {right} cannot be compared"));
-            error.at(a.at, left).at(b.at, right).help("compare values of one kind").into()
+            error
+                .at(a.at, left)
+                .at(b.at, right)
+                .help(match left == right {
+                    true => "compare a part of each",
+                    false => "compare values of one kind",
+                })
+                .into()
         })
+    }
+
+    /// What a side is measured in.
+    fn measure(&self, side: &Located) -> Eval<Option<Measure>> {
+        Measure::of(&side.value, &self.budget, side.at)
     }
 
     /// Two solids are the same where their symmetric difference is empty.
@@ -117,17 +146,27 @@ impl Machine<'_> {
 
     fn differs(&self, left: &Located, right: &Located, room: Room, at: Span) -> Diagnostic {
         let error = not_met(at);
+        if let (Val::Shape(a), Val::Shape(b)) = (&left.value, &right.value)
+            && let Some(place) = self.witness(a, b, at)
+        {
+            return error.note(place);
+        }
+        let unit = self.measure(left).ok().flatten().map_or("", Measure::unit);
         let apart = distance(&left.value, &right.value).map(|d| match room {
+            Room::Share(x) if size(&right.value) == 0.0 => format!(
+                "; they differ by {d:.3e}{unit}, and {} % of zero are nothing: write how far, `within 0.001{unit}`",
+                short(100.0 * x)
+            ),
             Room::Share(x) => {
                 let share = 100.0 * d / size(&right.value);
                 format!(
-                    "; they differ by {d:.3e}, {} %, where {} % are allowed",
+                    "; they differ by {d:.3e}{unit}, {} %, where {} % are allowed",
                     short(share),
                     short(100.0 * x)
                 )
             }
-            Room::Absolute(x) => format!("; they differ by {d:.3e}, where {x} is allowed"),
-            Room::None => format!("; they differ by {d:.3e}"),
+            Room::Absolute(x) => format!("; they differ by {d:.3e}{unit}, where {x}{unit} is allowed"),
+            Room::None => format!("; they differ by {d:.3e}{unit}"),
         });
         let (left, right) = (text(&left.value), text(&right.value));
         error.note(format!(
@@ -153,24 +192,4 @@ fn short(x: f64) -> String {
 
 fn not_met(at: Span) -> Diagnostic {
     Diagnostic::error("E0801", "an expectation is not met").at(at, "does not hold").fault(Fault::Unmet)
-}
-
-/// How far two numbers, angles (degrees) or vectors are apart: the largest of the components.
-fn distance(a: &Val, b: &Val) -> Option<f64> {
-    match (a, b) {
-        (Val::Number(a), Val::Number(b)) | (Val::Angle(a), Val::Angle(b)) => Some((a - b).abs()),
-        _ => {
-            let (a, b) = (a.numbers()?, b.numbers()?);
-            let differences = a.iter().zip(&b).map(|(x, y)| (x - y).abs());
-            (a.len() == b.len()).then(|| differences.fold(0.0, f64::max))
-        }
-    }
-}
-
-/// What a share is a share of.
-fn size(value: &Val) -> f64 {
-    match value {
-        Val::Number(x) | Val::Angle(x) => x.abs(),
-        value => value.numbers().unwrap_or_default().into_iter().fold(0.0, |m, x| m.max(x.abs())),
-    }
 }

@@ -49,6 +49,7 @@ impl Machine<'_> {
 
     /// `for a in b, c in d { e }`: one flat list, the last name fastest.
     pub fn repeat(&mut self, loops: &[(Word, Expr)], body: &Expr, at: Span) -> Eval<Val> {
+        loops.iter().for_each(|(name, _)| self.hides_builtin(name));
         let outside = self.locals.clone();
         let mut out = (Vec::new(), self.budget.hold());
         let done = self.turns(loops, body, at, &mut out);

@@ -14,9 +14,16 @@ const STEP: &str = "    ";
 /// A text in the house style; the text must hold items only, as it does where it can be parsed.
 pub fn format(text: &str, file: FileId) -> String {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let begins: Vec<usize> = split::cut(text, file).items.iter().map(|item| item.start).collect();
-    let mut writer =
-        Writer { text, out: String::new(), open: Vec::new(), opened: false, fresh: true, begun: false };
+    let begins: Vec<usize> = split::cut(text, file).items.iter().map(|item| item.range.start).collect();
+    let mut writer = Writer {
+        text,
+        out: String::new(),
+        open: Vec::new(),
+        line: [0; 2],
+        opened: false,
+        fresh: true,
+        begun: false,
+    };
     let all = tokens(text);
     let mut end = 0;
     for (i, token) in all.iter().enumerate() {
@@ -39,6 +46,8 @@ struct Writer<'t> {
     out: String,
     /// For each open bracket, where its line begins in `out`; of those of one line the first indents.
     open: Vec<usize>,
+    /// Where the last line begins in `out`, and up to where it was looked for: a line may have a million brackets.
+    line: [usize; 2],
     /// Whether the last word was a bracket that opens.
     opened: bool,
     /// Whether nothing stands on the line yet.
@@ -151,7 +160,10 @@ impl Writer<'_> {
         self.begun = true;
         self.opened = token.kind == TokenKind::Open;
         if self.opened {
-            self.open.push(self.out.rfind('\n').map_or(0, |at| at + 1));
+            let [begins, seen] = self.line;
+            let begins = self.out[seen..].rfind('\n').map_or(begins, |at| seen + at + 1);
+            self.line = [begins, self.out.len()];
+            self.open.push(begins);
         }
         self.fresh = false;
     }

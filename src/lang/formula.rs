@@ -1,12 +1,13 @@
 //! Conditions on the coordinates of any form, such as `x**2 + y**2 + z**2 <= 1`: read as the steps of a formula. What
 //! does not depend on x, y and z is evaluated at once.
 
+use super::angles;
 use super::args::Callee;
 use super::ast::{Args, Expr, ExprKind, InfixOp, PrefixOp, Step as Follows};
 use super::eval::Machine;
 use super::formula_functions::{FUNCTIONS, Function};
-use super::order;
 use super::value::{Eval, Val, bounded};
+use super::{arithmetic, order};
 use crate::diag::{Diagnostic, nearest};
 use crate::scene::Formula;
 use crate::scene::formula::{Builder, One, Step, Two};
@@ -216,6 +217,7 @@ impl Reader<'_, '_> {
         if let Some(known) = self.machine.defined(word, word_at) {
             return match known? {
                 Val::Function(closure) => self.call_function(&closure, args, word_at.to(args.at)),
+                Val::Builtin(builtin) => self.call_builtin(builtin.name, word_at, args),
                 value => {
                     let kind = value.kind();
                     let error = Diagnostic::error("E0410", format!("{kind} cannot be called"));
@@ -226,11 +228,16 @@ impl Reader<'_, '_> {
                 }
             };
         }
+        self.call_builtin(word, word_at, args)
+    }
+
+    /// The steps of a call of a function of the language.
+    fn call_builtin(&mut self, word: &str, word_at: Span, args: &Args) -> Eval<Term> {
         let Some(function) = FUNCTIONS.iter().find(|f| f.name == word) else {
             let error = Diagnostic::error("E0511", format!("`{word}` is no function of a formula"));
             let error = error.at(word_at, "not known here");
             return Err(match nearest(word, FUNCTIONS.iter().map(|f| f.name)) {
-                Some(near) => error.fix(word_at, near).help(format!("did you mean `{near}`?")),
+                Some(near) => error.fix_slip(word_at, word, near).help(format!("did you mean `{near}`?")),
                 None => error.help(format!(
                     "the functions are {}",
                     FUNCTIONS.iter().map(|f| format!("`{}`", f.name)).collect::<Vec<_>>().join(" ")
@@ -245,33 +252,30 @@ impl Reader<'_, '_> {
         call(self, &given, at)
     }
 
-    fn infix(&mut self, op: InfixOp, sign: Span, a: &Placed, b: &Placed) -> Eval<Term> {
-        use InfixOp::{Add, Divide, Multiply, Power, Remainder, Subtract};
+    /// An operator between two terms.
+    pub(super) fn infix(&mut self, op: InfixOp, sign: Span, a: &Placed, b: &Placed) -> Eval<Term> {
+        let of_angles = |a, b| arithmetic::is_angle(op, a, b);
         match (&a.term, &b.term) {
             (Term::Number(a), Term::Number(b)) => self.numbers(op, *a, *b, sign).map(Term::Number),
-            (Term::Angle(a), Term::Angle(b)) if matches!(op, Add | Subtract | Remainder) => {
-                self.numbers(op, *a, *b, sign).map(Term::Angle)
-            }
-            (Term::Angle(a), Term::Angle(b)) if op == Divide => {
-                self.numbers(op, *a, *b, sign).map(Term::Number)
-            }
-            (Term::Angle(a), Term::Number(b)) if matches!(op, Multiply | Divide) => {
-                self.numbers(op, *a, *b, sign).map(Term::Angle)
-            }
-            (Term::Number(a), Term::Angle(b)) if op == Multiply => {
-                self.numbers(op, *a, *b, sign).map(Term::Angle)
-            }
-            (Term::Vector(u), Term::Vector(v)) if u.len() == v.len() && op != Power => {
+            (Term::Vector(u), Term::Vector(v)) if u.len() == v.len() => {
                 let pair = |(a, b): (&u32, &u32)| self.numbers(op, *a, *b, sign);
                 u.iter().zip(v).map(pair).collect::<Eval<Vec<u32>>>().map(Term::Vector)
             }
-            (Term::Vector(v), Term::Number(b)) if matches!(op, Multiply | Divide | Remainder) => {
+            (Term::Vector(v), Term::Number(b)) => {
                 let one = |a: &u32| self.numbers(op, *a, *b, sign);
                 v.iter().map(one).collect::<Eval<Vec<u32>>>().map(Term::Vector)
             }
-            (Term::Number(a), Term::Vector(v)) if op == Multiply => {
+            (Term::Number(a), Term::Vector(v)) => {
                 let one = |b: &u32| self.numbers(op, *a, *b, sign);
                 v.iter().map(one).collect::<Eval<Vec<u32>>>().map(Term::Vector)
+            }
+            (Term::Number(x) | Term::Angle(x), Term::Number(y) | Term::Angle(y)) => {
+                let is_angle = |placed: &Placed| matches!(placed.term, Term::Angle(_));
+                match of_angles(is_angle(a), is_angle(b)) {
+                    Some(true) => self.numbers(op, *x, *y, sign).map(Term::Angle),
+                    Some(false) => self.numbers(op, *x, *y, sign).map(Term::Number),
+                    None => Err(self.unlike(op, a, b, sign).into()),
+                }
             }
             _ => Err(self.unlike(op, a, b, sign).into()),
         }
@@ -322,15 +326,10 @@ impl Reader<'_, '_> {
         match given.term {
             Term::Angle(a) => Ok(a),
             Term::Number(_) => {
-                let written = self.machine.written(given.at);
-                let plain = written.chars().all(|c| c.is_ascii_alphanumeric());
-                let fixed = if plain { format!("{written} * 1rad") } else { format!("({written}) * 1rad") };
+                let angles::Meant { help, edit } = angles::meant(self.machine.written(given.at), true);
                 let error = Diagnostic::error("E0502", format!("`{of}` wants an angle, found a bare number"));
-                Err(error
-                    .at(given.at, "which unit?")
-                    .fix(given.at, &fixed)
-                    .help(format!("write `{fixed}`"))
-                    .into())
+                let error = error.at(given.at, "which unit?").fix_with(given.at, edit.as_deref());
+                Err(error.help(help).into())
             }
             Term::Vector(_) => {
                 let error = Diagnostic::error("E0501", format!("`{of}` wants an angle, found a vector"));

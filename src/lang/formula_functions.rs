@@ -1,6 +1,7 @@
 //! The functions that a formula of x, y and z may use: those of `maths` but for colours.
 
 use super::args::Formal;
+use super::ast::InfixOp;
 use super::formula::{Placed, Reader, Term};
 use super::value::Eval;
 use crate::diag::Diagnostic;
@@ -111,12 +112,19 @@ fn pairwise(r: &mut Reader, op: Two, name: &str, a: &Placed, b: &Placed, at: Spa
     }
 }
 
-/// a (1 - t) + b t.
+/// a (1 - t) + b t, of vectors part by part.
 fn mix(r: &mut Reader, given: &[Placed], at: Span) -> Eval<Term> {
-    let [a, b, t] = [0, 1, 2].map(|i| r.number(&given[i], "mix"));
-    let (a, b, t) = (a?, b?, t?);
+    let [a, b, t] = given else { return Err(super::formula::stranger(at).into()) };
+    let t = r.number(t, "mix")?;
     let one = r.literal(1.0, at)?;
     let rest = r.two(Two::Subtract, one, t, at)?;
+    if let (Term::Vector(_), _) | (_, Term::Vector(_)) = (&a.term, &b.term) {
+        let number = |step| Placed { term: Term::Number(step), at };
+        let low = Placed { term: r.infix(InfixOp::Multiply, at, a, &number(rest))?, at };
+        let high = Placed { term: r.infix(InfixOp::Multiply, at, b, &number(t))?, at };
+        return r.infix(InfixOp::Add, at, &low, &high);
+    }
+    let (a, b) = (r.number(a, "mix")?, r.number(b, "mix")?);
     let (low, high) = (r.two(Two::Multiply, a, rest, at)?, r.two(Two::Multiply, b, t, at)?);
     r.two(Two::Add, low, high, at).map(Term::Number)
 }

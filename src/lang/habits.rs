@@ -113,6 +113,22 @@ const HABITS: &[(&[&str], Place, &str)] = &[
     (&["multmatrix"], Name, MAPS),
     (&["color"], Name, WEAR),
     (&["atan"], Name, "write `atan2(y, x)`"),
+    (&["sqr"], Name, "a square is `x ** 2`, a root `sqrt(x)`"),
+    (&["cbrt"], Name, "write `x ** (1 / 3)`"),
+    (&["sign", "sgn", "signum"], Name, "write `if x < 0 { -1 } else { 1 }`"),
+    (
+        &["sinh", "cosh", "tanh", "asinh", "acosh", "atanh"],
+        Name,
+        "write it by `exp` and `ln`: `(exp(x) + exp(-x)) / 2`",
+    ),
+    (&["log10", "log2"], Name, "write `ln(x) / ln(10)`"),
+    (&["hypot"], Name, "write `length([x, y])`"),
+    (&["fmod", "mod", "modulo"], Name, "write `a % b`"),
+    (&["trunc", "int"], Name, "write `floor(x)`, `ceil(x)` or `round(x)`"),
+    (&["fract", "frac"], Name, "write `x % 1`"),
+    (&["lerp"], Name, "write `mix(a, b, t)`"),
+    (&["degrees"], Name, "write `x * 1deg`; an angle in degrees is `angle / 1deg`"),
+    (&["radians"], Name, "write `x * 1rad`; an angle in radians is `angle / 1rad`"),
     (
         &["text"],
         Name,
@@ -164,7 +180,7 @@ const HABITS: &[(&[&str], Place, &str)] = &[
     (&["r1"], Argument, "a cylinder of two radii is `cone(r1: 2, r2: 1, h: 3)`"),
 ];
 
-/// Words that mean the same as one of ours, in the same place.
+/// Words that mean the same as one of ours, in the same place: what may mean something else, as `green` of CSS does, is none.
 const SAME: &[(&str, Place, &str)] = &[
     ("union", Item, "draw union"),
     ("difference", Item, "draw difference"),
@@ -180,17 +196,12 @@ const SAME: &[(&str, Place, &str)] = &[
     ("assert", Item, "expect"),
     ("light_source", Item, "light"),
     ("red", Name, "#ff0000"),
-    ("green", Name, "#00ff00"),
     ("blue", Name, "#0000ff"),
     ("white", Name, "#ffffff"),
     ("black", Name, "#000000"),
     ("yellow", Name, "#ffff00"),
-    ("orange", Name, "#ffa500"),
-    ("gray", Name, "#808080"),
-    ("grey", Name, "#808080"),
     ("cyan", Name, "#00ffff"),
     ("magenta", Name, "#ff00ff"),
-    ("brown", Name, "#a52a2a"),
     ("ellipsoid", Name, "sphere"),
     ("linear_extrude", Name, "extrude"),
     ("prism", Name, "extrude"),
@@ -205,7 +216,6 @@ const SAME: &[(&str, Place, &str)] = &[
     ("Pi", Name, "pi"),
     ("translate", Method, "move"),
     ("translated", Method, "move"),
-    ("position", Method, "move"),
     ("rotateX", Method, "rotate_x"),
     ("rotx", Method, "rotate_x"),
     ("rotateY", Method, "rotate_y"),
@@ -221,8 +231,6 @@ const SAME: &[(&str, Place, &str)] = &[
     ("lookat", Argument, "look_at"),
     ("fovy", Argument, "fov"),
     ("spp", Argument, "samples"),
-    ("power", Argument, "intensity"),
-    ("brightness", Argument, "intensity"),
 ];
 
 /// The word of ours that means the same.

@@ -10,16 +10,14 @@ use super::budget::Budget;
 use super::defines::{self, Define};
 use super::eval::{Machine, later};
 use super::modules::{self, Module};
+use super::salvage::in_order;
 use super::scope::Locals;
 use super::unknown::words;
 use super::value::{Eval, Located, Record, Stop, Val};
-use super::{Read, Reading, check, order, parse, print, resolve, sets, span, split, units};
-use crate::diag::{Diagnostic, nearest};
+use super::{Read, Reading, check, order, print, resolve, sets, units};
+use crate::diag::{Diagnostic, is_slip, nearest};
 use crate::scene::{Call, Draw, Group, Kind, Named, Scene};
 use crate::source::{FileId, SourceMap, Span};
-
-/// The largest file that is read.
-const MAX_BYTES: usize = 256 << 20;
 
 /// The words that may stand before `draw`, with their `@`.
 pub const ATTRIBUTES: [&str; 3] = ["ghost", "only", "skip"];
@@ -29,7 +27,31 @@ pub type Outcome = Result<Read, Vec<Diagnostic>>;
 
 /// Reads a file and what it imports. Needs a deep stack: see [`super::read`].
 pub fn read(sources: &mut SourceMap, file: FileId, reading: &Reading, defines: &[Define]) -> Outcome {
-    let (modules, mut errors) = modules::load(sources, file, reading)?;
+    let loaded = modules::load(sources, file, reading);
+    let importers = loaded.importers;
+    if loaded.modules.is_empty() {
+        let mut errors = loaded.errors;
+        modules::with_imports(&mut errors, &importers, sources);
+        return Err(errors);
+    }
+    let mut outcome = evaluated(sources, reading, defines, &loaded.modules, loaded.errors);
+    match &mut outcome {
+        Ok(read) => {
+            modules::with_imports(&mut read.warnings, &importers, sources);
+            modules::with_imports(&mut read.unmet, &importers, sources);
+        }
+        Err(errors) => modules::with_imports(errors, &importers, sources),
+    }
+    outcome
+}
+
+fn evaluated(
+    sources: &SourceMap,
+    reading: &Reading,
+    defines: &[Define],
+    modules: &[Module],
+    mut errors: Vec<Diagnostic>,
+) -> Outcome {
     let unit = scene_unit(modules.iter().rev().map(|m| &*m.items), &mut errors);
     let root = modules.last().map_or(&[][..], |m| &m.items);
     errors.extend(order::redefinitions(root.iter().filter_map(|i| label(i, false))));
@@ -39,12 +61,15 @@ pub fn read(sources: &mut SourceMap, file: FileId, reading: &Reading, defines: &
         .filter_map(|i| if let ItemKind::Param(p) = &i.kind { Some(p.name.text.as_str()) } else { None });
     let broken = modules.last().map_or(&[][..], |m| &m.broken);
     let params: Vec<&str> = params.chain(broken.iter().map(String::as_str)).collect();
-    errors.extend(defines::unknown(defines, &params));
+    if modules.last().is_some_and(|m| !m.partly) {
+        errors.extend(defines::unknown(defines, &params));
+    }
     let machine = Machine {
         catalog: reading.catalog,
         sources,
         unit,
         names: modules.iter().map(|_| HashMap::new()).collect(),
+        partly: modules.iter().map(|m| m.is_partly_known(modules)).collect(),
         module: 0,
         locals: Locals::default(),
         calls: 0,
@@ -69,73 +94,10 @@ pub fn read(sources: &mut SourceMap, file: FileId, reading: &Reading, defines: &
         named: Vec::new(),
         render: None,
         quiet: None,
+        spent: false,
     };
-    reader.read(&modules);
+    reader.read(modules);
     reader.finish()
-}
-
-/// What of a text could be read.
-pub struct Salvage {
-    /// The items without a mistake in their wording.
-    pub items: Vec<Item>,
-    /// The mistakes in the others.
-    pub errors: Vec<Diagnostic>,
-    /// What the others would have defined; `None` where nobody knows.
-    pub broken: Option<Vec<String>>,
-}
-
-/// The items, or every mistake in their wording.
-pub fn parsed(text: &str, file: FileId) -> Result<Vec<Item>, Vec<Diagnostic>> {
-    let Salvage { items, errors, .. } = salvaged(text, file);
-    if errors.is_empty() { Ok(items) } else { Err(errors) }
-}
-
-/// The items that can be read, and every mistake in the wording of the others.
-pub fn salvaged(text: &str, file: FileId) -> Salvage {
-    if let Err(error) = readable(text, file) {
-        return Salvage { items: Vec::new(), errors: vec![error], broken: None };
-    }
-    let cut = split::cut(text, file);
-    let mut errors = cut.errors;
-    let mut items = Vec::with_capacity(cut.items.len());
-    let mut broken = cut.whole.then(Vec::new);
-    let mut sound = cut.items.into_iter().peekable();
-    for range in cut.all {
-        let item = sound.next_if_eq(&range).map(|range| parse::item(text, file, range));
-        match item {
-            Some(Ok(item)) => items.push(item),
-            failed => {
-                errors.extend(failed.and_then(Result::err).map(|error| *error));
-                broken = broken.and_then(|mut names| {
-                    names.extend(resolve::names_in(&text[range])?);
-                    Some(names)
-                });
-            }
-        }
-    }
-    Salvage { items, errors: in_order(errors), broken }
-}
-
-/// Refuses what no scene can be.
-fn readable(text: &str, file: FileId) -> Result<(), Diagnostic> {
-    if text.len() > MAX_BYTES {
-        let told = format!("the scene is larger than {} MB", MAX_BYTES >> 20);
-        return Err(
-            Diagnostic::error("E0705", told).help("keep points in files of their own: `points(\"a.ply\")`")
-        );
-    }
-    if let Some(at) = text.find('\0') {
-        return Err(Diagnostic::error("E0103", "the text holds a NUL character")
-            .at(span(file, at..at + 1), "not text")
-            .help("is this a scene file?"));
-    }
-    Ok(())
-}
-
-/// In the order of the text.
-pub fn in_order(mut all: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    all.sort_by_key(|d| d.labels.first().map(|l| (l.span.file, l.span.start)));
-    all
 }
 
 /// The names that a file defines itself.
@@ -196,7 +158,9 @@ fn twice(what: &str, at: Span, first: Span) -> Diagnostic {
 
 /// The name space of a file.
 fn space_of(names: Vec<(String, Option<Val>)>) -> Record {
-    let failed = names.iter().filter(|(_, value)| value.is_none()).map(|(name, _)| name.clone()).collect();
+    let failed = names.iter().filter(|(_, value)| value.is_none()).map(|(name, _)| name.clone());
+    let mut failed: Vec<String> = failed.collect();
+    failed.sort_unstable();
     let fields = names.into_iter().filter_map(|(name, value)| Some((name, value?)));
     let mut fields: Vec<(String, Val)> = fields.collect();
     fields.sort_by(|a, b| a.0.cmp(&b.0));
@@ -220,6 +184,8 @@ struct Reader<'a> {
     render: Option<Span>,
     /// The last item that failed because of another.
     quiet: Option<Span>,
+    /// Whether no steps or no memory are left: all that follows would fail.
+    spent: bool,
 }
 
 impl Reader<'_> {
@@ -231,17 +197,20 @@ impl Reader<'_> {
             // Of a file that is imported nothing is seen; what it says and promises counts.
             let counts = |item: &&Item| root || matches!(item.kind, ItemKind::Print(_) | ItemKind::Expect(_));
             for item in module.items.iter().filter(counts) {
+                if self.spent {
+                    return;
+                }
                 let done = self.item(item);
                 self.told(done, item.at);
             }
             if root && self.expects {
                 self.named = self.shapes_of(&module.items);
             }
-            // Who has no steps left cannot look further.
-            if !self.errors.iter().any(|e| matches!(e.code, "E0709" | "E0710")) {
-                let more = resolve::unresolved(&mut self.machine, &module.items, &self.errors);
-                self.errors.extend(more);
+            if self.spent {
+                return;
             }
+            let more = resolve::unresolved(&mut self.machine, &module.items, &self.errors);
+            self.errors.extend(more);
         }
     }
 
@@ -287,8 +256,9 @@ impl Reader<'_> {
             let names: Vec<(String, Option<Val>)> = names.chain(broken).collect();
             match &import.space {
                 Some(space) => {
-                    let record = space_of(names);
-                    self.machine.names[k].insert(space.text.clone(), Some(Val::Record(Arc::new(record))));
+                    // What may have any name is not known at all.
+                    let record = (!modules[from].partly).then(|| Val::Record(Arc::new(space_of(names))));
+                    self.machine.names[k].insert(space.text.clone(), record);
                 }
                 None => self.machine.names[k].extend(names),
             }
@@ -296,6 +266,9 @@ impl Reader<'_> {
         let (sorted, cycles) = order::sorted(items, &takes_condition);
         self.errors.extend(cycles);
         for i in sorted {
+            if self.spent {
+                return;
+            }
             if let ItemKind::Import(_) = items[i].kind {
                 continue;
             }
@@ -331,7 +304,10 @@ impl Reader<'_> {
     fn told<T>(&mut self, outcome: Eval<T>, at: Span) -> Option<T> {
         match outcome {
             Ok(value) => return Some(value),
-            Err(Stop::Told(error)) => self.errors.push(*error),
+            Err(Stop::Told(error)) => {
+                self.spent |= matches!(error.code, "E0709" | "E0710");
+                self.errors.push(*error);
+            }
             Err(Stop::Quiet) => self.quiet = Some(at),
         }
         None
@@ -433,7 +409,7 @@ impl Reader<'_> {
                     let near = nearest(other, ATTRIBUTES);
                     return Err(error
                         .at(word.at, "unknown attribute")
-                        .fix_with(word.at, near)
+                        .fix_with(word.at, near.filter(|near| is_slip(other, near)))
                         .help(match near {
                             Some(near) => format!("did you mean `@{near}`?"),
                             None => "the attributes are `@ghost` `@only` `@skip`".to_owned(),

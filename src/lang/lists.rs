@@ -3,7 +3,7 @@
 use super::args::{Bound, Formal};
 use super::builtins::Builtin;
 use super::flow::{elements, range_count, room};
-use super::value::{Eval, List, Val};
+use super::value::{Eval, List, Located, Val};
 use crate::num::hash::{Stream, mix};
 
 const LIST: &[Formal] = &[Formal::place("list").is("a list or a range")];
@@ -26,7 +26,12 @@ pub const TABLE: &[Builtin] = &[
         doc: "The elements of one list, then those of another.",
         call: concat,
     },
-    Builtin { name: "sum", formals: LIST, doc: "The sum of a list of numbers or of vectors.", call: sum },
+    Builtin {
+        name: "sum",
+        formals: LIST,
+        doc: "The sum of a list of numbers, of angles or of vectors.",
+        call: sum,
+    },
     Builtin {
         name: "rand",
         formals: SEEDS,
@@ -54,6 +59,10 @@ fn concat(bound: &Bound) -> Eval<Val> {
 
 fn sum(bound: &Bound) -> Eval<Val> {
     let list = elements(bound.need("list")?, "list", bound.budget)?;
+    if let Some(Val::Angle(_)) = list.first().map(|first| &first.value) {
+        let angle = |item: &Located| item.angle("list", bound.sources.text(item.at));
+        return Ok(Val::Angle(list.iter().map(angle).collect::<Eval<Vec<f64>>>()?.iter().sum()));
+    }
     let Some(first) = list.first().and_then(|first| first.value.numbers()) else {
         let numbers = list.iter().map(|item| item.number("list")).collect::<Eval<Vec<f64>>>()?;
         return Ok(Val::Number(numbers.iter().sum()));

@@ -35,8 +35,8 @@ pub fn number(text: &str, at: Span) -> Result<ExprKind, Box<Diagnostic>> {
         None if name.starts_with('_') => "digits stand together: `1000`".to_owned(),
         None => format!("the units are {listed}; for a product write `{digits} * {name}`"),
     };
-    let edit = matches!(name, "pi" | "tau").then(|| format!("{digits} * {name}"));
-    let edit = edit.or_else(|| spoken.map(|unit| format!("{digits}{unit}")));
+    // `1 / 2pi` is not `1 / 2 * pi`: of a product there is no edit.
+    let edit = spoken.map(|unit| format!("{digits}{unit}"));
     Err(Diagnostic::error("E0105", format!("`{name}` is not a unit"))
         .fix_with(at, edit.as_deref())
         .at(Span { start: at.start + digits.len() as u32, ..at }, "not a unit")
@@ -71,7 +71,10 @@ pub fn color(text: &str, at: Span) -> Result<[f32; 3], Box<Diagnostic>> {
         _ => {
             return Err(Diagnostic::error("E0105", format!("`{text}` is not a colour"))
                 .at(at, "expected 3 or 6 hexadecimal digits")
-                .help("write `#rgb` or `#rrggbb`, such as `#b8683c`")
+                .help(match digits {
+                    Some(_) => "write `#rgb` or `#rrggbb`, such as `#b8683c`",
+                    None => "write `#rgb` or `#rrggbb`, such as `#b8683c`; to see through a shape, `@ghost draw shape`",
+                })
                 .into());
         }
     };

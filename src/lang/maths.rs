@@ -10,7 +10,7 @@ use crate::diag::Diagnostic;
 const X: &[Formal] = &[Formal::place("x").is("a number, or a vector: each of its numbers")];
 const V: &[Formal] = &[Formal::place("v").is("a vector")];
 const AB: &[Formal] = &[Formal::place("a"), Formal::place("b")];
-const ANGLE: &[Formal] = &[Formal::place("angle").is("an angle: `30deg`")];
+const ANGLE: &[Formal] = &[Formal::place("angle").is("an angle: `30deg`, or a list of 2 to 4")];
 const CLAMP: &[Formal] = &[
     Formal::place("x").is("a number"),
     Formal::place("lo").is("the least"),
@@ -68,30 +68,23 @@ fn each(bound: &Bound, f: fn(f64) -> f64) -> Eval<Val> {
 }
 
 fn each_or_angle(bound: &Bound, f: fn(f64) -> f64) -> Eval<Val> {
-    match bound.need("x")?.value {
-        Val::Angle(d) => Ok(Val::Angle(f(d))),
+    let x = bound.need("x")?;
+    match x.value.parts() {
+        Some((parts, true)) => Ok(parts.map(f).value(true, x.at)),
         _ => each(bound, f),
     }
 }
 
 fn pairwise(a: &Located, b: &Located, f: impl Fn(f64, f64) -> f64) -> Eval<Val> {
-    if let (Val::Angle(a), Val::Angle(b)) = (&a.value, &b.value) {
-        return Ok(Val::Angle(f(*a, *b)));
+    let both = a.value.parts().zip(b.value.parts());
+    let same = both.filter(|((_, a), (_, b))| a == b);
+    if let Some(value) = same.and_then(|((u, of_angles), (v, _))| Some(u.zip(v, f)?.value(of_angles, a.at))) {
+        return Ok(value);
     }
-    match (a.value.numbers(), b.value.numbers()) {
-        (Some(u), Some(v)) if u.len() == v.len() => {
-            Ok(Val::vector(u.into_iter().zip(v).map(|(x, y)| f(x, y)), a.at))
-        }
-        (Some(u), None) => {
-            let y = b.number("b")?;
-            Ok(Val::vector(u.into_iter().map(|x| f(x, y)), a.at))
-        }
-        (None, Some(v)) => {
-            let x = a.number("a")?;
-            Ok(Val::vector(v.into_iter().map(|y| f(x, y)), a.at))
-        }
-        _ => Ok(Val::Number(f(a.number("a")?, b.number("b")?))),
-    }
+    // Of two that do not fit the first that is no number is told.
+    a.number("a")?;
+    b.number("b")?;
+    Err(b.unlike("b", "a number").help("write a number, such as `10`").into())
 }
 
 fn clamp(bound: &Bound) -> Eval<Val> {
@@ -110,17 +103,33 @@ fn mix(bound: &Bound) -> Eval<Val> {
 }
 
 fn of_angle(bound: &Bound, f: fn(f64) -> f64) -> Eval<Val> {
-    Ok(Val::Number(f(bound.angle("angle")?)))
+    let given = bound.need("angle")?;
+    let Val::List(list) = &given.value else { return Ok(Val::Number(f(bound.angle("angle")?))) };
+    if !(2..=4).contains(&list.items.len()) {
+        return Err(given.unlike("angle", "an angle").help("write an angle, or a list of 2 to 4").into());
+    }
+    let one = |item: &Located| item.angle("angle", bound.sources.text(item.at)).map(f);
+    Ok(Val::vector(list.items.iter().map(one).collect::<Eval<Vec<f64>>>()?, given.at))
 }
 
 fn to_angle(bound: &Bound, f: fn(f64) -> f64) -> Eval<Val> {
-    let x = bound.need("x")?.number("x")?;
-    Ok(Val::Angle(units::degrees(f(x), AngleUnit::Radian)))
+    let given = bound.need("x")?;
+    let degrees = |x: f64| units::degrees(f(x), AngleUnit::Radian);
+    match given.value.numbers() {
+        Some(v) => Ok(Val::row(v.into_iter().map(degrees), true, given.at)),
+        None => Ok(Val::Angle(degrees(given.number("x")?))),
+    }
 }
 
 fn atan2(bound: &Bound) -> Eval<Val> {
-    let (y, x) = (bound.need("y")?.number("y")?, bound.need("x")?.number("x")?);
-    Ok(Val::Angle(units::degrees(y.atan2(x), AngleUnit::Radian)))
+    let (y, x) = (bound.need("y")?, bound.need("x")?);
+    let degrees = |y: f64, x: f64| units::degrees(y.atan2(x), AngleUnit::Radian);
+    if let (Some((v, false)), Some((u, false))) = (y.value.parts(), x.value.parts())
+        && let Some(parts) = v.zip(u, degrees)
+    {
+        return Ok(parts.value(true, y.at));
+    }
+    Ok(Val::Angle(degrees(y.number("y")?, x.number("x")?)))
 }
 
 fn vector(bound: &Bound, name: &str) -> Eval<Vec<f64>> {
@@ -163,6 +172,12 @@ fn rgb(bound: &Bound) -> Eval<Val> {
                 .at(given.at, format!("{x}"))
                 .help("the channels of a colour are zero or more")
                 .into());
+        }
+        if x > 1.0 {
+            let warning = Diagnostic::warning("W0205", format!("`{name}` is above 1: brighter than white"));
+            let warning = warning.at(given.at, format!("{x}"));
+            let bytes = "the channels reach from 0 to 1, and are linear; bytes are written `#ff8000`";
+            bound.warnings.borrow_mut().push(warning.help(bytes));
         }
         *channel = x as f32;
     }

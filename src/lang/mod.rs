@@ -1,6 +1,7 @@
 //! Scene text to [`crate::scene::Scene`]: grammar, names, units, types, operators. What can be called it
 //! reads from a [`Catalog`]; what a sphere is, and what a file holds, it leaves to others.
 
+mod angles;
 mod args;
 mod arithmetic;
 pub mod ast;
@@ -28,6 +29,7 @@ mod literals;
 mod maths;
 mod methods;
 mod modules;
+mod nearly;
 mod order;
 mod parse;
 mod placing;
@@ -35,6 +37,7 @@ mod print;
 mod queries;
 pub mod reference;
 mod resolve;
+mod salvage;
 mod scan;
 mod scope;
 mod sets;
@@ -144,7 +147,20 @@ pub fn read_with(sources: &mut SourceMap, file: FileId, reading: &Reading) -> Re
 
 /// The items of a text as they were written, each with its place; or every mistake in their wording.
 pub fn items(sources: &SourceMap, file: FileId) -> Result<Vec<ast::Item>, Vec<Diagnostic>> {
-    stacker::grow(STACK_BYTES, || items::parsed(&sources.file(file).text, file))
+    stacker::grow(STACK_BYTES, || salvage::parsed(&sources.file(file).text, file))
+}
+
+/// The items of a text one after the other, as they were written; those with a mistake in their wording are left out.
+pub fn each_item<E>(
+    sources: &SourceMap,
+    file: FileId,
+    mut take: impl FnMut(ast::Item) -> Result<(), E>,
+) -> Result<(), E> {
+    let text = &sources.file(file).text;
+    stacker::grow(STACK_BYTES, || {
+        let cut = split::cut(text, file).items.into_iter();
+        cut.filter_map(|item| parse::item(text, file, item.range).ok()).try_for_each(&mut take)
+    })
 }
 
 /// Bytes of all items of a text, those that cannot be read among them; each ends where the next begins.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::args::signature;
 use super::value::Val;
 
 /// Elements of a list that are written out.
@@ -49,6 +50,7 @@ fn write(value: &Val, out: &mut String) {
             between("(", closure.function.params.iter(), out, |param, out| out.push_str(&param.name.text));
             write!(out, ")")
         }
+        Val::Builtin(builtin) => write!(out, "{}", signature(builtin.name, builtin.formals)),
         Val::Record(record) => {
             between("{", record.fields.iter(), out, |(name, value), out| {
                 out.push_str(name);

@@ -8,6 +8,7 @@ use super::builtins;
 use super::defines;
 use super::eval::Machine;
 use super::scan::{TokenKind, tokens};
+use super::split::ITEM_WORDS;
 use super::unknown::callable;
 use super::value::{Eval, Stop, Val};
 use crate::diag::Diagnostic;
@@ -166,7 +167,21 @@ pub fn names_in(item: &str) -> Option<Vec<String>> {
     if words.contains(&"import") && !words.contains(&"as") {
         return None;
     }
-    let defines = |word: &str| matches!(word, "let" | "fn" | "param" | "material" | "as");
-    let named = all.windows(2).filter(|w| defines(w[0].text(item)) && w[1].kind == TokenKind::Word);
-    Some(named.map(|w| w[1].text(item).to_owned()).collect())
+    let defines = |word: &str| {
+        matches!(word, "let" | "fn" | "param" | "material" | "as")
+            || matches!(
+                word,
+                "var" | "const" | "function" | "module" | "def" | "func" | "#declare" | "#local"
+            )
+    };
+    // `x = 3`, and `for (i = ...)`.
+    let stray = words.first().is_some_and(|word| !ITEM_WORDS.contains(word));
+    let pairs = all.windows(2);
+    let named = pairs.filter_map(|w| {
+        let [first, second] = [&w[0], &w[1]];
+        let after = defines(first.text(item)) && second.kind == TokenKind::Word;
+        let before = stray && first.kind == TokenKind::Word && second.text(item) == "=";
+        if after { Some(second) } else { before.then_some(first) }
+    });
+    Some(named.map(|token| token.text(item).to_owned()).collect())
 }

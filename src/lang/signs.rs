@@ -32,7 +32,7 @@ pub const SIGNS: &[Sign] = &[
     line(
         &["+", "*", "/", "%", "**"],
         "a + b, a - b, a * b, a / b, a % b, a ** b",
-        "Sums, products, remainders and powers of numbers; sums and multiples of vectors.",
+        "Sums, products, remainders and powers of numbers; of vectors part by part, a number with each part.",
         "let v = 2 * [1, 2, 3] + [0, 0, 1]",
     ),
     line(
@@ -40,6 +40,12 @@ pub const SIGNS: &[Sign] = &[
         "a == b, a < b",
         "Comparisons. Between solids `==` asks whether nothing is inside one of them alone.",
         "let a = 1 < 2",
+    ),
+    line(
+        &["~="],
+        "expect a ~= b within 1%",
+        "What an expectation compares nearly: numbers, angles, colours and lists of them, by their largest component. Without `within` 1e-7 % of the right side is allowed.",
+        "expect 10 ~= 10.05 within 1%",
     ),
     line(
         &[".."],

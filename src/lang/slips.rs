@@ -2,6 +2,7 @@
 //! with the edit that makes it where there is one.
 
 use super::habits;
+use super::keywords::is_keyword;
 use super::scan::TokenKind;
 use super::syntax::Slip;
 use super::units;
@@ -24,7 +25,9 @@ const TWO: &str = "a block has one value: two make a list, `[a, b]`, or a union,
 impl Slip<'_> {
     /// The error, if the slip has a name.
     pub fn named(&self, word: &str, after_value: bool) -> Option<Diagnostic> {
-        let found = [Slip::number, Slip::looped, Slip::comma, Slip::sign, Slip::brought, Slip::listed].iter();
+        let all =
+            [Slip::number, Slip::chosen, Slip::looped, Slip::comma, Slip::sign, Slip::brought, Slip::listed];
+        let found = all.iter();
         let [message, label, help] = found.filter_map(|of| of(self, word, after_value)).next()?;
         let at = self.refused.place(self.found);
         let error = Diagnostic::error("E0101", message).at(at, label).help(help);
@@ -46,28 +49,60 @@ impl Slip<'_> {
         self.bracket.is_some_and(|(open, _)| self.text(open) == bracket)
     }
 
-    /// The edit that mends it, where there is one.
+    /// The edit that mends it, where there is one way and it means what was meant.
     fn mending(&self, word: &str, at: Span, after_value: bool) -> Option<(Span, String)> {
         let before = self.before.map(|token| self.refused.place(token));
+        let next = self.all.get(self.i + 1);
         match word {
-            "." if !after_value => Some((Span { end: at.start, ..at }, "0".to_owned())),
+            "." if !after_value
+                && self.before() != ".."
+                && next.is_some_and(|t| t.kind == TokenKind::Number) =>
+            {
+                Some((Span { end: at.start, ..at }, "0".to_owned()))
+            }
             "." if self.after_number() => Some((Span { start: at.end, ..at }, "0".to_owned())),
             _ if self.ends_in_a_point() => {
                 Some((Span { start: before?.end, end: before?.end, ..at }, "0".to_owned()))
             }
-            "=" if self.before() == ".." => Some((at, String::new())),
-            "=" if after_value && self.opened_by_condition() => Some((at, "<=".to_owned())),
-            "=" if after_value && self.bracket.is_some() => Some((at, ":".to_owned())),
-            "=" if after_value => Some((at, "==".to_owned())),
-            "&" => Some((before?.to(at), "and".to_owned())),
-            "|" => Some((before?.to(at), "or".to_owned())),
-            "+" if !after_value => Some((at, String::new())),
-            "," if self.opened_by("{") => Some((at, String::new())),
+            "=" if self.before() == ".." => None,
+            "=" if after_value && self.labels() => Some((at, ":".to_owned())),
+            "=" if after_value && self.is_asked() => Some((at, "==".to_owned())),
+            "&" if self.before() == "&" => Some((before?.to(at), "and".to_owned())),
+            "|" if self.before() == "|" => Some((before?.to(at), "or".to_owned())),
+            // After a `%` it may be the sign of a sum.
+            "+" if !after_value && self.before() != "%" && next.is_some_and(|t| t.begins_operand()) => {
+                Some((at, String::new()))
+            }
+            // What follows may be read as part of what stands before.
+            "," if self.opened_by("{") && next.is_some_and(|t| t.kind == TokenKind::Word) => {
+                Some((at, " ".to_owned()))
+            }
             _ if self.after_number() && units::names().any(|name| name == word) => {
                 Some((Span { start: before?.end, end: at.start, ..at }, String::new()))
             }
             _ => None,
         }
+    }
+
+    /// Whether a `=` stands after the name of an argument: a word of its own in the parentheses of a call.
+    fn labels(&self) -> bool {
+        let token =
+            |back: usize| self.i.checked_sub(back).and_then(|j| self.all.get(j)).map_or("", |t| self.text(t));
+        let is_word = self.before.is_some_and(|t| t.kind == TokenKind::Word);
+        let callee = self.bracket.and_then(|(_, j)| self.all.get(j.checked_sub(1)?));
+        let called = callee.is_some_and(|t| t.ends_operand(self.refused.text));
+        is_word
+            && matches!(token(2), "(" | ",")
+            && self.opened_by("(")
+            && called
+            && !self.opened_by_condition()
+    }
+
+    /// Whether a condition is wanted: in an expectation, or before the `{` of a choice.
+    fn is_asked(&self) -> bool {
+        let start = self.bracket.map_or(0, |(_, j)| j + 1);
+        let promised = self.bracket.is_none() && self.all.first().is_some_and(|t| self.text(t) == "expect");
+        promised || self.choosing(start)
     }
 
     /// Whether the token before is the point of a number that ends with it.
@@ -82,12 +117,20 @@ impl Slip<'_> {
         let next = self.all.get(self.i + 1);
         let digits = next.filter(|t| t.kind == TokenKind::Number && t.start() == self.found.end());
         match (word, digits) {
+            (".", _) if before == ".." => told(
+                "a range has two points",
+                "one point too many",
+                "write `1..5`: its end is left out, `1..6` is 1, 2, 3, 4, 5",
+            ),
             (".", Some(digits)) if !after_value => {
                 let help = format!("write `0.{}`", self.text(digits));
                 told("a number begins with its point", "digits are missing", help)
             }
             (".", _) if self.after_number() => Some(ends_with_point(before)),
             _ if self.ends_in_a_point() => Some(ends_with_point(self.text(&self.all[self.i - 2]))),
+            ("+", _) if !after_value && before == "%" => {
+                told("percentages are not added", "expected the end", "write one: `within 2%`")
+            }
             ("+", _) if !after_value => {
                 told("`+` is no sign of a number", "expected a value", "remove the `+`")
             }
@@ -128,6 +171,48 @@ impl Slip<'_> {
             _ if loops && after_value => told("the value of a loop stands in braces", "expected `{`", LOOP),
             _ => None,
         }
+    }
+
+    /// Blocks: one without a value, and what follows that of an `if` or a `for`.
+    fn chosen(&self, word: &str, after_value: bool) -> Option<[String; 3]> {
+        if word == "}" && after_value && self.opened_by("{") {
+            return told(
+                "a block without a value",
+                "expected a value",
+                "a block ends with its value: `{ let a = 3  2 * a }`",
+            );
+        }
+        if self.before() != "}" || self.found.kind != TokenKind::Sign || matches!(word, "," | ":" | "=") {
+            return None;
+        }
+        let begins = self.value_begins()?;
+        let whole = if begins == "for" { "(for i in 0..3 { i })" } else { "(if a { b } else { c })" };
+        told(
+            format!(
+                "`{word}` follows the last block of a{} `{begins}`",
+                if begins == "if" { "n" } else { "" }
+            ),
+            "the value ends before it",
+            format!("put parentheses around all of it: `{whole} {word} d`"),
+        )
+    }
+
+    /// The `if` or the `for` whose last block ends right before.
+    fn value_begins(&self) -> Option<&'static str> {
+        let mut depth = 0usize;
+        for j in (0..self.i).rev() {
+            let token = &self.all[j];
+            match (token.kind, self.text(token)) {
+                (TokenKind::Close, _) => depth += 1,
+                (TokenKind::Open, _) if depth == 0 => return None,
+                (TokenKind::Open, _) => depth -= 1,
+                (_, "if") if depth == 0 => return Some("if"),
+                (_, "for") if depth == 0 => return Some("for"),
+                (_, "=" | "draw" | "print" | "expect") if depth == 0 => return None,
+                _ => {}
+            }
+        }
+        None
     }
 
     /// Whether an `if` has not come to its `{` yet.
@@ -171,24 +256,10 @@ impl Slip<'_> {
 
     /// Signs of other languages.
     fn sign(&self, word: &str, after_value: bool) -> Option<[String; 3]> {
-        let before = self.before();
         match word {
-            "=" if after_value && self.opened_by_condition() => told(
-                "a condition compares",
-                "one `=` does not",
-                "a solid is where a condition holds: `x**2 + y**2 <= 1`, `z < 60`",
-            ),
-            "=" if self.bracket.is_some() && after_value => told(
-                "`=` has no place in arguments",
-                "expected `:`",
-                format!("an argument is named with a colon: `{before}: value`"),
-            ),
-            "=" if after_value => told(
-                "one `=` too many",
-                "does not fit here",
-                "a name is bound once, `let a = 3`; values are compared by `==`",
-            ),
-            "&" | "|" if before == word => {
+            "=" if after_value => self.equals(),
+            // C and its heirs.
+            "&" | "|" if self.before() == word => {
                 let meant = if word == "&" { "and" } else { "or" };
                 let help = format!("solids take `{word}`, conditions `{meant}`");
                 told(format!("`{word}{word}` is no operator"), "one sign too many", help)
@@ -203,6 +274,35 @@ impl Slip<'_> {
             }
             _ => None,
         }
+    }
+
+    /// One `=` after a value.
+    fn equals(&self) -> Option<[String; 3]> {
+        if self.opened_by_condition() {
+            return told(
+                "a condition compares",
+                "one `=` does not",
+                "a solid is where a condition holds: `x**2 + y**2 <= 1`, `z < 60`",
+            );
+        }
+        if self.labels() {
+            let callee = self.bracket.and_then(|(_, j)| self.all.get(j.checked_sub(1)?));
+            let habit = callee.and_then(|t| called(self.text(t)));
+            let habit = habit.or_else(|| habits::instead(self.before(), habits::Place::Argument));
+            let help = match habit {
+                Some(help) => format!("arguments are named with a colon; {help}"),
+                None => format!("an argument is named with a colon: `{}: value`", self.before()),
+            };
+            return told("`=` has no place in arguments", "expected `:`", help);
+        }
+        if self.is_asked() {
+            return told("a condition compares by `==`", "one `=` does not", "write `a == b`");
+        }
+        told(
+            "one `=` too many",
+            "does not fit here",
+            "a name is bound once, `let a = 3`; values are compared by `==`",
+        )
     }
 
     /// Habits of other languages.
@@ -223,6 +323,21 @@ impl Slip<'_> {
                     "operands stand in a list: `difference(base, [a, b])`, or between signs: `base - a`",
                 ),
             ),
+            "{" if self.before.is_some_and(|t| t.kind == TokenKind::Word && !is_keyword(self.text(t))) => {
+                told(
+                    "a call has parentheses",
+                    "does not fit here",
+                    called(self.before()).map_or_else(
+                        || {
+                            format!(
+                                "arguments stand in parentheses, with their names: `{}(...)`",
+                                self.before()
+                            )
+                        },
+                        str::to_owned,
+                    ),
+                )
+            }
             _ if after_value && self.bracket.is_none() && next == ":" => {
                 told("arguments stand in parentheses", "does not fit here", "write `sphere(r: 1)`")
             }

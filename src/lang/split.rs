@@ -20,9 +20,9 @@ pub const MAX_NESTING: usize = 1000;
 
 /// The items of a text and what stood in the way.
 pub struct Cut {
-    /// Bytes of the items that are worth parsing.
-    pub items: Vec<Range<usize>>,
-    /// Bytes of all items.
+    /// The items that are worth parsing.
+    pub items: Vec<Sound>,
+    /// Bytes of all items; each ends where the next begins.
     pub all: Vec<Range<usize>>,
     /// Whether it could be cut at all.
     pub whole: bool,
@@ -66,6 +66,20 @@ pub fn is_shallow(text: &str) -> bool {
 struct Open {
     start: usize,
     sound: bool,
+    /// Whether it begins with no word of an item.
+    stray: bool,
+    /// The first character of it that no scene holds.
+    stranger: Option<Diagnostic>,
+}
+
+/// An item that is worth parsing.
+pub struct Sound {
+    /// Its bytes, up to its last token.
+    pub range: Range<usize>,
+    /// Which of all items it is.
+    pub which: usize,
+    /// The first character of it that no scene holds: to be told where the grammar comes so far.
+    pub stranger: Option<Diagnostic>,
 }
 
 struct Cutter<'a> {
@@ -86,8 +100,8 @@ impl Cutter<'_> {
             if !self.open.is_empty() {
                 self.unclosed(Some(i));
             }
-            self.close_item(self.tokens[i].start());
-            self.item = Some(Open { start: i, sound: true });
+            self.close_item(i);
+            self.item = Some(Open { start: i, sound: true, stray: false, stranger: None });
         }
         let is_at =
             |i: usize| self.tokens[i].kind == TokenKind::Sign && self.tokens[i].text(self.text) == "@";
@@ -96,7 +110,7 @@ impl Cutter<'_> {
         let open = matches!(self.tokens[i].kind, TokenKind::OpenText | TokenKind::OpenComment);
         if self.item.is_none() && !open {
             self.no_item(i);
-            self.item = Some(Open { start: i, sound: false });
+            self.item = Some(Open { start: i, sound: false, stray: true, stranger: None });
         }
         match self.tokens[i].kind {
             TokenKind::Open => self.open.push(i),
@@ -110,7 +124,7 @@ impl Cutter<'_> {
         if !self.open.is_empty() {
             self.unclosed(None);
         }
-        self.close_item(self.text.len());
+        self.close_item(self.tokens.len());
     }
 
     /// Whether an item begins at a token. Inside brackets only what can stand nowhere else does, so that one
@@ -133,19 +147,25 @@ impl Cutter<'_> {
             _ => false,
         };
         let Some(innermost) = self.open.last() else {
-            return starts;
+            // What stands on the line of a `for` of another language is its body.
+            return starts && (token.leads_line || self.item.as_ref().is_none_or(|item| !item.stray));
         };
         let in_block = self.tokens[*innermost].text(self.text) == "{";
         starts && token.leads_line && after.is_none_or(|(_, t)| t != ":") && !(word == "let" && in_block)
     }
 
-    fn close_item(&mut self, end: usize) {
+    /// Ends the item before a token.
+    fn close_item(&mut self, next: usize) {
         if let Some(item) = self.item.take() {
-            let range = self.tokens[item.start].start()..end;
+            let start = self.tokens[item.start].start();
+            let end = self.tokens.get(next).map_or(self.text.len(), Token::start);
             if item.sound {
-                self.out.items.push(range.clone());
+                // Blanks and comments that follow are no part of it.
+                let last = next.checked_sub(1).map_or(end, |last| self.tokens[last].end());
+                let which = self.out.all.len();
+                self.out.items.push(Sound { range: start..last, which, stranger: item.stranger });
             }
-            self.out.all.push(range);
+            self.out.all.push(start..end);
         }
     }
 
@@ -197,15 +217,17 @@ impl Cutter<'_> {
 
     fn strange(&mut self, i: usize) {
         let error = stranger(self.text, &self.tokens[i], self.place(i));
-        match self.item {
+        match &mut self.item {
+            Some(item) if self.tokens[i].kind == TokenKind::Stranger => {
+                item.stranger.get_or_insert(error);
+            }
             Some(_) => self.spoil(error),
             None => self.out.errors.push(error),
         }
     }
 
     fn no_item(&mut self, i: usize) {
-        let next = self.tokens.get(i + 1).map_or("", |t| t.text(self.text));
-        let error = not_an_item(self.tokens[i].text(self.text), next, self.place(i));
+        let error = not_an_item(self.text, self.tokens, i, self.place(i));
         self.out.errors.push(error);
     }
 }
@@ -218,8 +240,27 @@ fn closing_of(opener: &str) -> &'static str {
     }
 }
 
-/// Something stands where an item should begin; `next` is the token after it.
-pub fn not_an_item(word: &str, next: &str, at: Span) -> Diagnostic {
+/// Whether the parentheses that open at a token hold more than one thing.
+fn holds_several(text: &str, tokens: &[Token], open: usize) -> bool {
+    let mut depth = 0usize;
+    for token in tokens.iter().skip(open) {
+        match token.kind {
+            TokenKind::Open => depth += 1,
+            TokenKind::Close => depth = depth.saturating_sub(1),
+            TokenKind::Sign if depth == 1 && token.text(text) == "," => return true,
+            _ => {}
+        }
+        if depth == 0 {
+            break;
+        }
+    }
+    false
+}
+
+/// The error that the token with a number stands where an item should begin.
+pub fn not_an_item(text: &str, tokens: &[Token], i: usize, at: Span) -> Diagnostic {
+    let word = tokens[i].text(text);
+    let next = tokens.get(i + 1).map_or("", |t| t.text(text));
     let error = Diagnostic::error("E0106", format!("`{}` begins no item", shown(word)));
     let habit =
         if word.starts_with('#') && word.len() > 1 && habits::instead(word, habits::Place::Item).is_none() {
@@ -228,7 +269,11 @@ pub fn not_an_item(word: &str, next: &str, at: Span) -> Diagnostic {
             word
         };
     if let Some(help) = habits::instead_of_item(habit) {
-        return error.at(at, "not an item").fix_with(at, habits::same(word, habits::Place::Item)).help(help);
+        // `print` and `expect` take one value.
+        let takes_one = matches!(word, "echo" | "assert");
+        let fits = !(takes_one && holds_several(text, tokens, i + 1));
+        let same = habits::same(word, habits::Place::Item).filter(|_| fits);
+        return error.at(at, "not an item").fix_with(at, same).help(help);
     }
     if word == "fn" {
         return error.at(at, "a function without a name").help("write `fn name(a, b = 1) = value`");
@@ -238,7 +283,7 @@ pub fn not_an_item(word: &str, next: &str, at: Span) -> Diagnostic {
             let error = error.at(at, "not an item").fix(at, format!("let {word}"));
             error.help(format!("a name is given once, by `let {word} = ...`"))
         }
-        Some(known) => error.at(at, "not a keyword").fix(at, known).help(format!("did you mean `{known}`?")),
+        Some(known) => error.at(at, "not a keyword").fix_slip(at, word, known).help(format!("did you mean `{known}`?")),
         None if next == "{" => error.at(at, "not an item").help(format!(
             "arguments stand in parentheses, with their names, and what is to be seen is drawn: `draw {word}(...)`"
         )),
@@ -249,6 +294,21 @@ pub fn not_an_item(word: &str, next: &str, at: Span) -> Diagnostic {
         None => error
             .at(at, "expected an item")
             .help(format!("an item begins with one of {}", ITEM_WORDS.map(|w| format!("`{w}`")).join(" "))),
+    }
+}
+
+/// What stands instead of a `;` where nothing is needed: a blank if it keeps two words apart. None where what follows it
+/// would be read as a part of what stands before.
+fn without(text: &str, token: &Token) -> Option<&'static str> {
+    let rest = &text[token.end()..];
+    match rest.trim_start().chars().next() {
+        None | Some('}' | '@' | ';' | '/') => Some(""),
+        Some(c) if c.is_ascii_alphabetic() || c == '_' => {
+            Some(if rest.starts_with(char::is_whitespace) { "" } else { " " })
+        }
+        // The lines of a `(` and a `[` are their own.
+        Some('(' | '[') if rest[..rest.len() - rest.trim_start().len()].contains('\n') => Some(""),
+        Some(_) => None,
     }
 }
 
@@ -275,8 +335,8 @@ fn stranger(text: &str, token: &Token, at: Span) -> Diagnostic {
                 _ => "outside of strings and comments only ASCII letters, digits and signs are used",
             };
             let edit = match found {
-                ";" => Some(""),
-                "°" => Some("deg"),
+                ";" => without(text, token),
+                "°" if text[..token.start()].ends_with(|c: char| c.is_ascii_digit()) => Some("deg"),
                 _ => None,
             };
             Diagnostic::error("E0103", format!("`{}` has no meaning here", found.escape_debug()))

@@ -4,7 +4,7 @@
 use super::keywords::{self, usage};
 use super::scan::{Token, TokenKind, tokens};
 use super::split::{ITEM_WORDS, not_an_item};
-use super::{slips, span};
+use super::{habits, slips, span};
 use crate::diag::{Diagnostic, shown};
 use crate::source::{FileId, Span};
 
@@ -171,7 +171,8 @@ impl Slip<'_> {
         if item == "@" && !self.all[..self.i].iter().any(|t| self.text(t) == "draw") {
             let error = Diagnostic::error("E0101", "an attribute stands before `draw`");
             let error = error.at(at, "expected `draw`").fix(Span { end: at.start, ..at }, "draw ");
-            return error.help("write `@only draw shape`");
+            let attribute = self.all.get(1).map_or("only", |t| self.text(t));
+            return error.help(format!("write `@{} draw shape`", shown(attribute)));
         }
         let after_value = self.before.is_some_and(|t| t.ends_operand(self.refused.text));
         if let Some(error) = self.named(word, after_value) {
@@ -182,8 +183,7 @@ impl Slip<'_> {
             && self.found.leads_line
             && self.found.kind == TokenKind::Word
         {
-            let next = self.all.get(self.i + 1).map_or("", |t| self.text(t));
-            return not_an_item(word, next, at);
+            return not_an_item(self.refused.text, self.all, self.i, at);
         }
         if after_value { self.after_value(word, at) } else { self.want_value(word, at) }
     }
@@ -214,6 +214,9 @@ impl Slip<'_> {
         let after = self.before.map_or("", |t| self.text(t));
         let error = Diagnostic::error("E0101", format!("expected a value after `{after}`, found `{shown}`"))
             .at(at, "not a value");
+        if let Some(help) = habits::instead(word, habits::Place::Item).filter(|_| after == "draw") {
+            return error.help(help);
+        }
         if after == "." {
             return error.help("after `.` stands the name of a method");
         }

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::angles;
 use super::budget::{Budget, Held, weight};
+use super::builtins::Builtin;
 use super::functions::Closure;
 use crate::diag::Diagnostic;
 use crate::scene::{MaterialId, Shape};
@@ -63,6 +65,8 @@ pub enum Val {
     Material(MaterialId),
     /// A function that the scene defines.
     Function(Arc<Closure>),
+    /// A function of the language, by its name.
+    Builtin(&'static Builtin),
     /// Named values.
     Record(Arc<Record>),
 }
@@ -72,16 +76,26 @@ pub enum Val {
 pub struct Record {
     /// What it is, with its article.
     pub kind: &'static str,
-    /// The values with their names.
+    /// The values with their names, in the order of these where there are more than a few.
     pub fields: Vec<(String, Val)>,
-    /// Names whose values failed: what is wrong is told where they are defined.
+    /// Names whose values failed, in their order: what is wrong is told where they are defined.
     pub failed: Vec<String>,
 }
 
 impl Record {
     /// The value of a name.
     pub fn get(&self, name: &str) -> Option<&Val> {
-        self.fields.iter().find(|(n, _)| n == name).map(|(_, value)| value)
+        const FEW: usize = 8;
+        let found = match self.fields.len() {
+            ..=FEW => self.fields.iter().position(|(n, _)| n == name),
+            _ => self.fields.binary_search_by(|(n, _)| n.as_str().cmp(name)).ok(),
+        };
+        found.map(|i| &self.fields[i].1)
+    }
+
+    /// Whether a name is there and its value failed.
+    pub fn is_failed(&self, name: &str) -> bool {
+        self.failed.binary_search_by(|n| n.as_str().cmp(name)).is_ok()
     }
 
     /// The names.
@@ -121,6 +135,44 @@ impl List {
     }
 }
 
+/// One number or angle, or those of a vector.
+#[derive(Clone, Debug)]
+pub enum Parts {
+    One(f64),
+    Many(Vec<f64>),
+}
+
+impl Parts {
+    /// A function of each.
+    pub fn map(self, f: impl Fn(f64) -> f64) -> Parts {
+        match self {
+            Parts::One(x) => Parts::One(f(x)),
+            Parts::Many(v) => Parts::Many(v.into_iter().map(f).collect()),
+        }
+    }
+
+    /// A function of pairs: part by part, one number with each of the other; `None` for vectors of different sizes.
+    pub fn zip(self, other: Parts, f: impl Fn(f64, f64) -> f64) -> Option<Parts> {
+        Some(match (self, other) {
+            (Parts::One(a), b) => b.map(|y| f(a, y)),
+            (a, Parts::One(b)) => a.map(|x| f(x, b)),
+            (Parts::Many(u), Parts::Many(v)) if u.len() == v.len() => {
+                Parts::Many(u.into_iter().zip(v).map(|(x, y)| f(x, y)).collect())
+            }
+            _ => return None,
+        })
+    }
+
+    /// The value that they make.
+    pub fn value(self, of_angles: bool, at: Span) -> Val {
+        match self {
+            Parts::One(x) if of_angles => Val::Angle(x),
+            Parts::One(x) => Val::Number(x),
+            Parts::Many(v) => Val::row(v, of_angles, at),
+        }
+    }
+}
+
 /// A value with the place of its expression.
 #[derive(Clone, Debug)]
 pub struct Located {
@@ -133,8 +185,27 @@ pub struct Located {
 impl Val {
     /// A vector.
     pub fn vector(numbers: impl IntoIterator<Item = f64>, at: Span) -> Val {
-        let items = numbers.into_iter().map(|x| Located { value: Val::Number(x), at }).collect();
-        Val::List(Arc::new(List { items, depth: 1, _held: None }))
+        Val::row(numbers, false, at)
+    }
+
+    /// A vector of numbers, or a row of angles (degrees).
+    pub fn row(parts: impl IntoIterator<Item = f64>, of_angles: bool, at: Span) -> Val {
+        let part = |x| Located { value: if of_angles { Val::Angle(x) } else { Val::Number(x) }, at };
+        Val::List(Arc::new(List { items: parts.into_iter().map(part).collect(), depth: 1, _held: None }))
+    }
+
+    /// What an operator of numbers acts on, and whether these are angles (degrees).
+    pub fn parts(&self) -> Option<(Parts, bool)> {
+        match self {
+            Val::Number(x) => Some((Parts::One(*x), false)),
+            Val::Angle(x) => Some((Parts::One(*x), true)),
+            Val::List(list) if matches!(list.items.first()?.value, Val::Angle(_)) => {
+                let angle = |i: &Located| if let Val::Angle(x) = i.value { Some(x) } else { None };
+                let angles = (2..=4).contains(&list.items.len()).then(|| list.items.iter().map(angle))?;
+                Some((Parts::Many(angles.collect::<Option<_>>()?), true))
+            }
+            _ => Some((Parts::Many(self.numbers()?), false)),
+        }
     }
 
     /// The numbers of a vector: a list of two to four numbers.
@@ -159,7 +230,7 @@ impl Val {
             Val::Range(..) => "a range",
             Val::Shape(_) => "a shape",
             Val::Material(_) => "a material",
-            Val::Function(_) => "a function",
+            Val::Function(_) | Val::Builtin(_) => "a function",
             Val::Record(record) => record.kind,
         }
     }
@@ -211,12 +282,11 @@ impl Located {
         match &self.value {
             Val::Angle(x) => bounded(*x, self.at),
             Val::Number(_) => {
-                let plain = written.chars().all(|c| c.is_ascii_digit() || c == '.');
-                let fixed = if plain { format!("{written}deg") } else { format!("({written}) * 1deg") };
+                let angles::Meant { help, edit } = angles::meant(written, false);
                 Err(Diagnostic::error("E0502", format!("`{name}` wants an angle, found a bare number"))
                     .at(self.at, "which unit?")
-                    .fix(self.at, &fixed)
-                    .help(format!("write `{fixed}`"))
+                    .fix_with(self.at, edit.as_deref())
+                    .help(help)
                     .into())
             }
             _ => Err(self.unlike(name, "an angle").help("write an angle, such as `30deg`").into()),

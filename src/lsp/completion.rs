@@ -5,6 +5,7 @@ use lsp_types::{CompletionItem, CompletionItemKind, Documentation, MarkupContent
 use super::context::Callee;
 use super::hover::{callees, function, line};
 use super::names::{Binding, Kind, Outline};
+use super::parts::{self, What};
 use super::view::{View, is_keyword, is_material, is_method};
 use crate::lang::reference::{Chapter, Word};
 use crate::lang::{ATTRIBUTES, ITEM_WORDS, LENGTHS, TYPES};
@@ -41,7 +42,15 @@ fn after_point(view: &View, i: usize) -> Vec<CompletionItem> {
     let space = i.checked_sub(2).and_then(|i| view.outline.space_at(i));
     match space.and_then(|space| view.space(view.outline.name(space))) {
         Some(file) => file.outline.owned().map(|b| named(&file.outline, b)).collect(),
-        None => view.words.iter().filter(|word| is_method(word)).map(known).collect(),
+        None => {
+            let what = i.checked_sub(1).map_or(What::Unknown, |point| parts::before(view, point));
+            let part = |(name, doc): &(&str, &str)| CompletionItem {
+                detail: Some((*doc).to_owned()),
+                ..plain(name, CompletionItemKind::FIELD)
+            };
+            let methods = view.words.iter().filter(|word| what.has_methods() && is_method(word));
+            what.parts().iter().map(part).chain(methods.map(known)).collect()
+        }
     }
 }
 

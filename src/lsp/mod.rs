@@ -13,6 +13,7 @@ mod diagnostics;
 mod documents;
 mod hover;
 mod names;
+mod parts;
 mod positions;
 mod server;
 mod symbols;

@@ -148,4 +148,10 @@ pub const CODES: &[Code] = &[
             "$ pss render scene.pss -o a.png --size 8x6 --quiet --time-limit 0\n$ pss render scene.pss -o a.png --size 8x6 --resume\ndraw sphere(r: 1)",
         ],
     ),
+    code(
+        "W0205",
+        "A channel of a colour is above 1.",
+        "The channels of `rgb` are linear and reach from 0 to 1; write bytes as `#ff8000`.",
+        ["let a = rgb(255, 128, 0)", "let a = #ff8000"],
+    ),
 ];
