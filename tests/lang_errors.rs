@@ -174,19 +174,19 @@ error[E0203]: `+` cannot take a number and an angle
   |         | |
   |         | does not fit its operands
   |         a number
-  = help: an angle has a unit: `30deg`
+  = help: an angle has a unit, `30deg`, and goes with angles alone
 "#
 }
 
 says! {
-    a_function_wants_arguments: "let a = sqrt\nlet b = 3\nlet c = b(2)\nlet d = sphere(r: 1).move\n",
+    a_function_wants_arguments: "let a = count\nlet b = 3\nlet c = b(2)\nlet d = sphere(r: 1).move\n",
     r#"
-error[E0410]: `sqrt` is called with arguments
+error[E0410]: `count` is called with arguments
  --> scene.pss:1:9
   |
-1 | let a = sqrt
-  |         ^^^^ no arguments
-  = help: write `sqrt(...)`
+1 | let a = count
+  |         ^^^^^ no arguments
+  = help: write `count(...)`
 
 error[E0410]: a number cannot be called
  --> scene.pss:3:10
@@ -201,7 +201,7 @@ error[E0410]: `.move` is called with arguments
  --> scene.pss:4:22
   |
 4 | let d = sphere(r: 1).move
-  |                      ^^^^ no arguments
+  |                      ^^^^^ no arguments
   = help: write `.move(...)`
 "#
 }

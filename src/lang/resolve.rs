@@ -126,7 +126,8 @@ impl Resolver<'_, '_> {
             _ => self.expr(base)?,
         }
         rest.try_for_each(|step| match step {
-            Step::Call(args) | Step::Method(_, args) => self.args(args),
+            Step::Call(args) => self.args(args),
+            Step::Method(word, args) => self.args(args).map_err(|stop| Machine::worn(&word.text, stop)),
             Step::Index(index, _) => self.expr(index),
             Step::Member(_) => Ok(()),
         })

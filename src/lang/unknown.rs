@@ -108,7 +108,9 @@ pub fn no_member(on: &Located, word: &Word, budget: &Budget) -> Diagnostic {
             None => error.help(format!("it has {}", listed(record.names(), |n| format!("`.{n}`")))),
         };
     }
-    if let Some(function) = builtins::functions().find(|b| b.name == name) {
+    // Of `.union(b)` more can be said than that it is a function.
+    let habit = habits::instead(name, habits::Place::Method);
+    if let Some(function) = builtins::functions().find(|b| b.name == name && habit.is_none()) {
         let error = Diagnostic::error("E0408", format!("`{name}` is a function, not a part of {kind}"));
         let of = if matches!(on.value, Val::Shape(_)) { "shape" } else { "value" };
         let rest = if function.formals.len() > 1 { ", ..." } else { "" };

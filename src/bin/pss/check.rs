@@ -4,6 +4,7 @@ use std::path::Path;
 
 use pss::diag::{Diagnostic, Severity};
 use pss::prepare::Options;
+use pss::source::FileId;
 
 use crate::args::CheckArgs;
 use crate::console::{Console, Failure};
@@ -30,11 +31,16 @@ pub fn run(args: &CheckArgs, console: &Console) -> u8 {
 fn check(args: &CheckArgs, scene: &Path, console: &Console) -> Result<[usize; 2], Failure> {
     let options = Options { ghosts: true, measure_all: true, write_out: true, ..Options::default() };
     let asks = Asks { quiet: false, expects: true, idle: true };
-    let Loaded { shot, outline, sources, warnings, unmet, idle, .. } =
+    let Loaded { shot, outline, sources, warnings, unmet, idle, draws, .. } =
         load::load_with(scene, &args.read, options, asks, console)?;
     let mut findings = pss::check::findings(&shot, &outline);
     // The scene is made without what it does not draw: no error, but to be known.
     findings.extend(idle.into_iter().map(|error| Diagnostic { severity: Severity::Warning, ..error }));
+    // A file of names alone is there to be imported.
+    if draws == 0 && pss::lang::items(&sources, FileId::default()).is_ok_and(|items| items.is_empty()) {
+        let warning = Diagnostic::warning("W0203", "the scene is empty: nothing is drawn");
+        findings.push(warning.help("draw something: `draw sphere(r: 1)`"));
+    }
     console.show(&findings, &sources);
     if !unmet.is_empty() {
         return Err(Failure::new(unmet, sources));
