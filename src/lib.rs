@@ -30,6 +30,7 @@ mod deep;
 pub mod diag;
 pub mod film;
 pub mod geom;
+pub mod golden;
 pub mod heights;
 pub mod lang;
 pub mod lsp;

@@ -87,3 +87,13 @@ pub const MARGIN: f64 = 1.0 / (1u64 << 20) as f64;
 /// Where the values of a formula over a stretch of a ray spread no wider than this many times what rounding spreads its
 /// value at one point of it, dividing the stretch tells nothing more.
 pub const FLAT: f64 = 8.0;
+
+/// By this share a golden's t or depth may differ from today's: the same operations give the same bits, and another order of them,
+/// or another machine, roundings that grow by a few digits on the way. A radius or a place that is wrong is off by far more.
+pub const GOLDEN_SHARE: f64 = 1e-9;
+
+/// By this much a component of a golden's unit normal may differ: normals are kept as `f32`, which tells them to 6e-8.
+pub const GOLDEN_NORMAL: f32 = 1e-6;
+
+/// The share of pixels that may show the leaf on the other side of an edge, where roundings decide on which side a ray passes.
+pub const GOLDEN_STRAYS: f64 = 5e-4;

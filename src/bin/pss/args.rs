@@ -33,7 +33,7 @@ pub enum Command {
     Fmt(FmtArgs),
     /// Print a scene as JSON: what was written, and what it comes to
     Dump(DumpArgs),
-    /// Evaluate the `expect` items of all scenes of a folder
+    /// Evaluate the `expect` items of all scenes of a folder, and compare the goldens beside them
     Test(TestArgs),
     /// Say what a word of the language, or the code of a message, means; without one, list all words
     Explain(ExplainArgs),
@@ -88,6 +88,9 @@ pub struct TestArgs {
     /// A folder of scenes, or a scene
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
+    /// Make goldens of what the scenes are now, where their `expect` items hold: NAME.spans, NAME.exr, NAME.png
+    #[arg(long)]
+    pub bless: bool,
     /// Write a report for a test server
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,

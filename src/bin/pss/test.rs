@@ -1,6 +1,5 @@
-//! `pss test`: the `expect` items of a folder's scenes, and whether each can be prepared.
+//! `pss test`: the `expect` items of a folder's scenes, whether each can be prepared, and whether it is what its goldens say.
 
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -11,45 +10,58 @@ use pss::report;
 
 use crate::args::TestArgs;
 use crate::console::{Console, Failure};
+use crate::goldens;
+use crate::junit::{self, Outcome};
 use crate::load;
 
-/// What became of a scene.
-struct Outcome {
-    scene: PathBuf,
-    seconds: f64,
-    /// What to say where it failed.
-    failure: Option<String>,
-}
-
-/// Runs all scenes; 0 where all hold, 1 where an expectation does not, else the code of the first that cannot be read.
+/// Runs all scenes; 0 where all hold, 1 where an expectation or a golden does not, else the code of the first that cannot be read.
 pub fn run(args: &TestArgs, console: &Console) -> Result<u8, Failure> {
     let scenes = scenes(&args.folder)?;
-    let (mut code, mut outcomes) = (0, Vec::new());
+    let (mut code, mut bare, mut outcomes) = (0, 0, Vec::new());
     for scene in scenes {
         let start = Instant::now();
-        let options = Options { measure_all: true, ..Options::default() };
-        let asks = load::Asks { quiet: true, expects: true, idle: false };
-        let done = load::load_with(&scene, &args.read, options, asks, console);
-        let done = done.and_then(|loaded| match loaded.unmet.is_empty() {
-            true => Ok(()),
-            false => Err(Failure::new(loaded.unmet, loaded.sources)),
-        });
-        let failure = done.err().map(|failure| {
-            let failed = console.fail(&failure);
-            code = if code == 0 { failed } else { code };
-            report::text(&failure.diagnostics, &failure.sources, false)
-        });
+        let done = test(&scene, args, console);
+        let (told, failure) = match done {
+            Ok(kept) => {
+                bare += usize::from(kept.is_bare);
+                (format!("ok{}", kept.told), None)
+            }
+            Err(failure) => {
+                let failed = console.fail(&failure);
+                code = if code == 0 { failed } else { code };
+                ("FAILED".to_owned(), Some(report::text(&failure.diagnostics, &failure.sources, false)))
+            }
+        };
         let seconds = start.elapsed().as_secs_f64();
-        let told = if failure.is_some() { "FAILED" } else { "ok" };
         console.note(&format!("{}: {told}", scene.display()));
         outcomes.push(Outcome { scene, seconds, failure });
     }
     let failed = outcomes.iter().filter(|o| o.failure.is_some()).count();
     console.note(&format!("{} scenes, {failed} failed", outcomes.len()));
+    if 0 < bare {
+        console.note(&format!("{bare} of them have no golden: `--bless` makes them"));
+    }
     if let Some(path) = &args.junit {
-        write_whole(path, |out| out.write_all(junit(&args.folder, &outcomes).as_bytes()))?;
+        let report = junit::report(&args.folder, &outcomes);
+        write_whole(path, |out| out.write_all(report.as_bytes()))?;
     }
     Ok(code)
+}
+
+/// Tests a scene: what to say where all holds.
+fn test(scene: &Path, args: &TestArgs, console: &Console) -> Result<goldens::Kept, Failure> {
+    let options = Options { measure_all: true, ..Options::default() };
+    let asks = load::Asks { quiet: true, expects: true, idle: false };
+    let mut loaded = load::load_with(scene, &args.read, options, asks, console)?;
+    let mut unmet = std::mem::take(&mut loaded.unmet);
+    let kept = match args.bless {
+        // What does not hold is no example for later.
+        true if !unmet.is_empty() => Ok(goldens::Kept::default()),
+        true => goldens::bless(scene, &loaded, console),
+        false => goldens::compare(scene, &loaded),
+    };
+    let kept = kept.map_err(|more| unmet.extend(more)).unwrap_or_default();
+    if unmet.is_empty() { Ok(kept) } else { Err(Failure::new(unmet, loaded.sources)) }
 }
 
 /// The scenes of a folder and the folders in it, in the order of their names.
@@ -86,47 +98,4 @@ fn scenes(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
         return Err(Failure::from(Diagnostic::error("E0601", message).fault(Fault::Missing)));
     }
     Ok(scenes)
-}
-
-/// A report in the form that test servers read.
-fn junit(folder: &Path, outcomes: &[Outcome]) -> String {
-    let failed = outcomes.iter().filter(|o| o.failure.is_some()).count();
-    let total: f64 = outcomes.iter().map(|o| o.seconds).sum();
-    let suite = escaped(&folder.display().to_string());
-    let mut out = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    let _ = writeln!(
-        out,
-        "<testsuite name=\"{suite}\" tests=\"{}\" failures=\"{failed}\" errors=\"0\" time=\"{total:.3}\">",
-        outcomes.len()
-    );
-    for Outcome { scene, seconds, failure } in outcomes {
-        let name = escaped(&scene.display().to_string());
-        let _ = write!(out, "  <testcase classname=\"{suite}\" name=\"{name}\" time=\"{seconds:.3}\"");
-        let _ = match failure {
-            None => writeln!(out, "/>"),
-            Some(text) => {
-                let first = escaped(text.lines().next().unwrap_or_default());
-                writeln!(
-                    out,
-                    ">\n    <failure message=\"{first}\">{}</failure>\n  </testcase>",
-                    escaped(text)
-                )
-            }
-        };
-    }
-    out.push_str("</testsuite>\n");
-    out
-}
-
-/// Text within XML.
-fn escaped(text: &str) -> String {
-    let keep = |c: char| match c {
-        '&' => "&amp;".to_owned(),
-        '<' => "&lt;".to_owned(),
-        '>' => "&gt;".to_owned(),
-        '"' => "&quot;".to_owned(),
-        c if c.is_control() && c != '\n' && c != '\t' => "?".to_owned(),
-        c => c.to_string(),
-    };
-    text.chars().map(keep).collect()
 }

@@ -1,0 +1,162 @@
+//! Golden layers: which leaf each pixel shows, how far away and how its face lies, in a small picture of the scene.
+
+use std::io;
+use std::path::Path;
+
+use crate::csg::Scratch;
+use crate::film::{Aov, Film};
+use crate::geom::{Interval, tolerance};
+use crate::output::read_exr;
+use crate::render::{Progress, RenderError, View, render_scenery};
+use crate::shot::{Settings, Shot};
+
+/// The longer side of a golden picture, pixels, where the scene's own is not shorter.
+pub const SIDE: u32 = 72;
+
+/// The most rays a pixel.
+const SAMPLES: u32 = 4;
+
+/// What goldens hold.
+const LAYERS: [Aov; 3] = [Aov::Depth, Aov::Normal, Aov::Leaf];
+
+/// How goldens are rendered: as the scene says, but small and with the layers that goldens hold.
+pub fn settings(of: &Settings) -> Settings {
+    let longer = of.size[0].max(of.size[1]);
+    let side = |n: u32| match longer <= SIDE {
+        true => n,
+        false => (f64::from(n) * f64::from(SIDE) / f64::from(longer)).round().max(1.0) as u32,
+    };
+    let (size, samples) = (of.size.map(side), of.samples.min(SAMPLES));
+    Settings { size, samples, crop: None, aov: LAYERS.to_vec(), ..of.clone() }
+}
+
+/// The small picture of a scene with the layers of goldens.
+pub fn film(shot: &Shot) -> Result<Film, RenderError> {
+    let settings = settings(&shot.settings);
+    let Shot { world, ghosts, camera, lights, materials, .. } = shot;
+    let view = View { camera, lights, materials, ghosts: ghosts.as_ref(), settings: &settings };
+    Ok(render_scenery(world, &view, &Progress::default())?.film)
+}
+
+/// The layers alone: colour belongs to the picture.
+pub fn alone(film: &Film) -> Film {
+    Film { rgba: vec![[0.0; 4]; film.rgba.len()], ..film.clone() }
+}
+
+/// Reads a golden; fails where the file is no such.
+pub fn read(path: &Path) -> io::Result<Film> {
+    let film = read_exr(path)?;
+    match LAYERS.iter().all(|aov| film.layer(*aov).is_some()) {
+        true => Ok(film),
+        false => {
+            Err(io::Error::new(io::ErrorKind::InvalidData, "it has not the layers depth, N and leaf.id"))
+        }
+    }
+}
+
+/// What a pixel shows.
+#[derive(Clone, Copy, PartialEq, Debug)]
+struct Seen {
+    /// One more than the leaf's index; 0 where nothing is.
+    id: f32,
+    /// World length.
+    depth: f32,
+    normal: [f32; 3],
+}
+
+impl Seen {
+    fn at(film: &Film, pixel: usize) -> Seen {
+        let values = |aov| film.layer(aov).map_or(&[][..], |layer| &layer.data);
+        let value = |aov, i| values(aov).get(i).copied().unwrap_or(f32::NAN);
+        Seen {
+            id: value(Aov::Leaf, pixel),
+            depth: value(Aov::Depth, pixel),
+            normal: [0, 1, 2].map(|i| value(Aov::Normal, 3 * pixel + i)),
+        }
+    }
+
+    /// Whether depth and normal agree, where `bar` says by how much the depth may be off.
+    fn agrees(&self, now: &Seen, bar: impl FnOnce() -> f64) -> bool {
+        let lies =
+            self.normal.iter().zip(&now.normal).all(|(a, b)| (a - b).abs() <= tolerance::GOLDEN_NORMAL);
+        if self.depth == now.depth {
+            return lies;
+        }
+        let [a, b] = [self.depth, now.depth].map(f64::from);
+        // Each is rounded to its own `f32`.
+        let share = tolerance::GOLDEN_SHARE + f64::from(f32::EPSILON);
+        lies && ((a - b).abs() <= share * a.max(b) || (a - b).abs() <= share * a.max(b) + 2.0 * bar())
+    }
+
+    fn told(&self) -> String {
+        let Seen { id, depth, normal: [x, y, z] } = self;
+        match *id == 0.0 {
+            true => "nothing".to_owned(),
+            false => format!("leaf {}, depth {depth}, normal {x} {y} {z}", id - 1.0),
+        }
+    }
+}
+
+/// Which pixels stand at an edge: within one pixel another leaf is seen.
+pub fn edges(film: &Film) -> Vec<bool> {
+    let [w, h] = film.size.map(|n| n as usize);
+    let ids = film.layer(Aov::Leaf).map_or(&[][..], |layer| &layer.data);
+    let edge = |i: usize| {
+        let ([x, y], id) = ([i % w, i / w], ids.get(i));
+        let mut near = (y.saturating_sub(1)..(y + 2).min(h))
+            .flat_map(|y| (x.saturating_sub(1)..(x + 2).min(w)).map(move |x| y * w + x));
+        near.any(|j| ids.get(j) != id)
+    };
+    (0..w * h).map(edge).collect()
+}
+
+/// So many pixels at edges may be others.
+pub fn strays(pixels: usize) -> usize {
+    (tolerance::GOLDEN_STRAYS * pixels as f64) as usize
+}
+
+/// Pixels that may differ at edges, and those that may not, brought together: what is wrong.
+pub fn wrong(strays_found: Vec<usize>, mut wrong: Vec<usize>, pixels: usize) -> Vec<usize> {
+    if strays(pixels) < strays_found.len() {
+        wrong.extend(strays_found);
+        wrong.sort_unstable();
+    }
+    wrong
+}
+
+/// The pixels that differ between two films of one size, ascending. `shot` is what the later shows.
+pub fn differing(was: &Film, now: &Film, shot: &Shot) -> Vec<usize> {
+    let (mut apart, mut off) = (Vec::new(), Vec::new());
+    let edges = edges(was);
+    for pixel in 0..edges.len() {
+        let (a, b) = (Seen::at(was, pixel), Seen::at(now, pixel));
+        if a.id != b.id {
+            if edges[pixel] { apart.push(pixel) } else { off.push(pixel) }
+        } else if !a.agrees(&b, || bar(shot, now.size, pixel)) {
+            off.push(pixel);
+        }
+    }
+    wrong(apart, off, edges.len())
+}
+
+/// What a pixel was and is, in words.
+pub fn told(film: &Film, pixel: usize) -> String {
+    Seen::at(film, pixel).told()
+}
+
+/// By how much the depth of a pixel may be off, world length, where it shows what is known within a bound only; else 0.
+fn bar(shot: &Shot, size: [u32; 2], pixel: usize) -> f64 {
+    let [x, y] = [pixel as u32 % size[0], pixel as u32 / size[0]].map(|n| f64::from(n) + 0.5);
+    let ray = shot.camera.ray(x, y, size);
+    let hit = shot.world.first(&ray, Interval::AHEAD, &mut Scratch::default());
+    hit.map_or(0.0, |hit| hit.boundary.crossing.err * ray.dir.length())
+}
+
+/// Normals as colours, for people: 8-bit, three bytes a pixel.
+pub fn shown(film: &Film) -> Vec<u8> {
+    let color = |pixel| {
+        let Seen { id, normal, .. } = Seen::at(film, pixel);
+        normal.map(|x| if id == 0.0 { 0 } else { (127.5 * (x + 1.0)).clamp(0.0, 255.0) as u8 })
+    };
+    (0..film.rgba.len()).flat_map(color).collect()
+}
