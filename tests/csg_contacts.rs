@@ -4,7 +4,7 @@
 mod csg_support;
 
 use csg_support::draws::Draws;
-use csg_support::golden::picture;
+use csg_support::scene::picture;
 use csg_support::scene::{ends, prepared, shot, spans};
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 use pss::csg::Scratch;

@@ -1,163 +1,100 @@
-//! Golden dumps and pictures of every operator, on analytic solids and on scans.
+//! Goldens of every operator and of every primitive under every operator, on analytic solids and on scans: where fixed rays go in
+//! and out, layers, and pictures, all in `tests/goldens`, on which `pss test tests/goldens` runs as on any folder.
 //!
-//! Each scene has a number that a formula knows, so that a wrong golden cannot be blessed unseen, and goldens are shown
-//! to fail where an operator is another. `PSS_BLESS=1 cargo test --test goldens` rewrites them.
+//! Each scene has a number that a formula knows, so that a wrong golden cannot be blessed unseen; goldens are shown to fail in
+//! `golden_mutations`. `PSS_BLESS=1 cargo test --test goldens` rewrites what differs.
 
-mod csg_support;
+mod golden_support;
 
-use std::f64::consts::PI;
-use std::fs;
-use std::sync::LazyLock;
+use golden_support::primitives::assets;
+use golden_support::{Golden, all, blessing, folder, holds, primitives};
+use pss::golden::{self, Goldens, Kind, rays, spans};
+use pss::solid::table::PRIMITIVES;
 
-use csg_support::golden::{blessing, dump, path, picture, volume};
-use csg_support::scene::shot;
-use pss::shot::Shot;
-
-const VIEW: &str = "
-material red(color: #c04030)
-material blue(color: #3060c0)
-camera(eye: [3, -4, 2.5], look_at: [0, 0, 0], height: 3.2, kind: \"orthographic\")
-light(direction: [-1, 2, -3], intensity: 2)
-light(color: #8090a0, intensity: 0.5)
-render(size: [72, 54], samples: 4, integrator: \"direct\", tone: \"none\")
-";
-
-/// The operands: two balls, one apart, or scans of them; a third ball within both. A half-space cuts the view open in
-/// [`text`], so that what is inside is seen.
-fn balls(scans: bool) -> String {
-    let of = |x: f64, r: f64| {
-        let ball = format!("sphere(r: {r}, at: [{x}, 0, 0])");
-        if scans { format!("points({ball}, samples: 1500)") } else { ball }
-    };
-    let [a, b, c] = [of(-0.5, 0.9), of(0.5, 0.9), of(0.0, 0.3)];
-    format!("let a = {a}.with(red)\nlet b = {b}.with(blue)\nlet c = {c}\n")
-}
-
-/// The text of a golden's scene.
-fn text(expr: &str, scans: bool) -> String {
-    format!("{}{}let shown = {expr}\ndraw shown & half_space(y > 0)\n", VIEW.trim_start(), balls(scans))
-}
-
-fn ball(r: f64) -> f64 {
-    4.0 / 3.0 * PI * r * r * r
-}
-
-/// What two balls of radius r at distance one have in common.
-fn lens(r: f64) -> f64 {
-    PI * (4.0 * r + 1.0) * (2.0 * r - 1.0).powi(2) / 12.0
-}
-
-/// Names, expressions over a, b, c, and their volumes in the box of side three, both halves.
-fn scenes() -> Vec<(&'static str, &'static str, f64)> {
-    let (one, common, small) = (ball(0.9), lens(0.9), ball(0.3));
-    vec![
-        ("union", "a | b", 2.0 * one - common),
-        ("intersection", "a & b", common),
-        ("difference", "a - b", one - common),
-        ("xor", "a ^ b", 2.0 * (one - common)),
-        ("complement", "!a & b", one - common),
-        ("union-list", "union([a, b, c])", 2.0 * one - common),
-        ("intersection-list", "intersection([a, b, c])", small),
-        ("difference-list", "difference(a, [b, c])", one - common),
-        ("xor-list", "xor([a, b, c])", 2.0 * (one - common) + small),
-        ("outside", "(!a) & box(size: 3)", 27.0 - one),
-        ("drilled", "(a | b) - cylinder(r: 0.3, from: [0, 0, -2], to: [0, 0, 2])", f64::NAN),
-        ("halved", "(a | b) & half_space(z < 0)", one - 0.5 * common),
-    ]
-}
-
-/// A scene of the goldens.
-struct Golden {
-    name: String,
-    text: String,
-    shot: Shot,
-    volume: f64,
-    scans: bool,
-}
-
-/// All scenes, prepared once: scans take their time.
-static GOLDENS: LazyLock<Vec<Golden>> = LazyLock::new(|| {
-    let mut all = Vec::new();
-    for scans in [false, true] {
-        for (name, expr, volume) in scenes() {
-            if scans && !["union", "intersection", "difference", "xor", "difference-list"].contains(&name) {
-                continue;
-            }
-            let name = format!("{name}{}", if scans { "-scans" } else { "" });
-            let text = text(expr, scans);
-            all.push(Golden { name, shot: shot(&text), text, volume: 0.5 * volume, scans });
-        }
-    }
-    all
-});
-
-fn named(name: &str) -> &'static Golden {
-    GOLDENS.iter().find(|g| g.name == name).unwrap()
-}
-
-/// The volume that the formula knows, by rays: analytic to the grid's own error, scans to theirs beside it.
-#[test]
-fn each_scene_has_the_volume_of_its_formula() {
-    for Golden { name, shot, volume: want, scans, .. } in GOLDENS.iter().filter(|g| !g.volume.is_nan()) {
-        let have = volume(shot, if *scans { 50 } else { 240 });
-        let bound = if *scans { 0.02 } else { 0.004 };
-        assert!((have - want).abs() <= bound * want, "{name}: {have}, by the formula {want}");
-    }
-}
-
-/// Compares a golden with what is, or writes it.
-fn golden(name: &str, suffix: &str, have: &[u8], wrong: &mut Vec<String>) {
-    let path = path(name, suffix);
-    if blessing() {
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(&path, have).unwrap();
-    } else if fs::read(&path).ok().as_deref() != Some(have) {
-        wrong.push(format!("{name}.{suffix}"));
-    }
-}
-
-const RAYS: usize = 120;
-
-#[test]
-fn spans_are_those_of_the_goldens() {
+/// Scenes that are as they were; all differences in words.
+fn unlike(scenes: &[Golden]) -> Vec<String> {
     let mut wrong = Vec::new();
-    for Golden { name, text, shot, .. } in GOLDENS.iter() {
-        golden(name, "pss", text.as_bytes(), &mut wrong);
-        golden(name, "txt", dump(shot, RAYS).as_bytes(), &mut wrong);
+    for (name, bytes) in assets() {
+        if !holds(&folder().join(name), &bytes) {
+            wrong.push(name.to_owned());
+        }
     }
-    assert!(wrong.is_empty(), "not as they were: {wrong:?}");
+    for scene in scenes {
+        if !holds(&scene.path(), scene.text.as_bytes()) {
+            wrong.push(format!("{}.pss", scene.name));
+        }
+        let (prepared, unmet) = scene.read(&scene.text, true);
+        if !unmet.is_empty() {
+            wrong.push(format!("{}: {unmet:#?}", scene.name));
+        } else if blessing() {
+            let goldens = Goldens::read(&scene.path()).unwrap();
+            golden::bless(&scene.path(), &goldens, &prepared.shot, &[]).unwrap();
+        } else {
+            let differs = scene.compare(&scene.text).differs;
+            wrong.extend(differs.iter().map(|d| format!("{}: {d:?}", scene.name)));
+        }
+    }
+    wrong
+}
+
+/// What formulas say, where rays go, which leaf is seen where, and what is seen.
+#[test]
+fn scenes_are_what_their_formulas_and_goldens_say() {
+    let wrong = unlike(&all());
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]
-fn pictures_are_those_of_the_goldens() {
-    let mut wrong = Vec::new();
-    for Golden { name, shot, .. } in GOLDENS.iter() {
-        let (have, path) = (picture(shot), path(name, "png"));
-        let [w, h] = shot.settings.size;
-        if blessing() {
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            image::save_buffer(&path, &have, w, h, image::ColorType::Rgb8).unwrap();
-            continue;
-        }
-        let want = image::open(&path).map(|i| i.to_rgb8().into_raw()).unwrap_or_default();
-        if have != want {
-            wrong.push(name.clone());
-        }
+fn every_primitive_has_a_golden_and_every_golden_a_number() {
+    let scenes = primitives::subjects();
+    for p in PRIMITIVES.iter().filter(|p| p.decl.word != "plane") {
+        let word = p.decl.word;
+        assert!(
+            scenes.iter().any(|s| s.name.starts_with(word) && s.text.contains(&format!("{word}("))),
+            "{word}"
+        );
     }
-    assert!(wrong.is_empty(), "not as they were: {wrong:?}");
+    assert!(all().iter().all(|scene| scene.text.contains(" ~= ")));
 }
 
-/// Another operator is another dump and another picture: a golden can fail.
+/// No file without its scene: a golden that nothing compares would rot.
 #[test]
-fn every_swap_of_two_operators_changes_dump_and_picture() {
-    for suffix in ["", "-scans"] {
-        let names = ["union", "intersection", "difference", "xor"].map(|n| named(&format!("{n}{suffix}")));
-        let made = names.map(|g| (&g.name, dump(&g.shot, RAYS), picture(&g.shot)));
-        for (i, (name, spans, pixels)) in made.iter().enumerate() {
-            for (other, other_spans, other_pixels) in &made[..i] {
-                assert_ne!(spans, other_spans, "dumps of {name} and {other}");
-                assert_ne!(pixels, other_pixels, "pictures of {name} and {other}");
+fn every_file_belongs_to_a_scene() {
+    let scenes = all();
+    let mut known: Vec<_> = scenes.iter().map(Golden::path).collect();
+    known.extend(scenes.iter().flat_map(|s| Kind::ALL.map(|kind| kind.beside(&s.path()))));
+    known.extend(assets().map(|(name, _)| folder().join(name)));
+    // That of the language's tests.
+    known.push(folder().join("mistakes.txt"));
+    let mut open = vec![folder()];
+    while let Some(next) = open.pop() {
+        for entry in std::fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                let is_difference = path.to_string_lossy().ends_with(".diff.png");
+                assert!(is_difference || known.contains(&path), "{}", path.display());
             }
         }
+    }
+}
+
+/// A golden is text by one rule: the rays of another thread, run or machine are those of its head.
+#[test]
+fn one_thread_and_many_write_the_same_bytes() {
+    let scenes = all();
+    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    for name in ["xor-scans", "primitives/extrude", "films"] {
+        let scene = scenes.iter().find(|s| s.name == name).unwrap();
+        let made = [1, 4].map(|threads| {
+            pool(threads).install(|| {
+                let (prepared, _) = scene.read(&scene.text, false);
+                let rays = rays::Rays::of(prepared.shot.world.bounds());
+                let text = spans::text(&spans::trace(&prepared.shot.world, rays));
+                (text, golden::layers::film(&prepared.shot).unwrap())
+            })
+        });
+        assert!(made[0] == made[1], "{name}");
     }
 }

@@ -2,7 +2,7 @@
 
 mod csg_support;
 
-use csg_support::golden::picture;
+use csg_support::scene::picture;
 use csg_support::scene::shot;
 
 /// A die with dimples, a bored block and a torus on a floor, all lengths times `s`, all places moved by `to`.

@@ -5,7 +5,6 @@
 pub mod draws;
 pub mod forest;
 pub mod frames;
-pub mod golden;
 pub mod line;
 pub mod oracle;
 pub mod scene;

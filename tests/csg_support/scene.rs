@@ -6,6 +6,7 @@ use pss::csg::{Scratch, Spans};
 use pss::diag::Diagnostic;
 use pss::geom::{Interval, Ray};
 use pss::prepare::{self, Options, Prepared};
+use pss::render::{Progress, render};
 use pss::shot::Shot;
 use pss::source::SourceMap;
 
@@ -53,4 +54,12 @@ pub fn spans(shot: &Shot, ray: &Ray, scratch: &mut Scratch) -> Spans {
     let mut out = Spans::new();
     shot.world.spans(ray, Interval::ALL, scratch, &mut out);
     out
+}
+
+/// The picture as RGB bytes.
+pub fn picture(shot: &Shot) -> Vec<u8> {
+    let film = render(shot, &Progress::default()).unwrap().film;
+    let mut png = Vec::new();
+    pss::output::write_png(&film, shot.settings.exposure, shot.settings.tone, &mut png).unwrap();
+    image::load_from_memory(&png).unwrap().to_rgb8().into_raw()
 }

@@ -457,6 +457,24 @@ pub const CODES: &[Code] = &[
         ],
     ),
     code(
+        "E0805",
+        "A scene is not what its golden says.",
+        "The message gives the first ray or pixel that differs, what was there and what is. If it is meant, `pss test --bless` makes it the golden.",
+        [
+            "$ pss test scene.pss --bless\n$ pss test scene.pss -D r=1.1\nparam r = 1\nrender(size: [8, 8], samples: 1)\ndraw sphere(r: r)\nexpect volume(sphere(r: 1)) ~= 4.18879 within 0.1%",
+            "$ pss test scene.pss --bless\n$ pss test scene.pss -D r=1\nparam r = 1\nrender(size: [8, 8], samples: 1)\ndraw sphere(r: r)\nexpect volume(sphere(r: 1)) ~= 4.18879 within 0.1%",
+        ],
+    ),
+    code(
+        "E0806",
+        "A file that lies where a golden goes is none.",
+        "Remove what is broken, and `pss test --bless` writes it anew; move away what somebody rendered beside the scene.",
+        [
+            "$ pss test scene.pss\ndraw sphere(r: 1)\n--- scene.spans\nrays: many",
+            "$ pss test scene.pss\ndraw sphere(r: 1)\n--- scene.txt\nrays: many",
+        ],
+    ),
+    code(
         "E0900",
         "The program is wrong.",
         "This is a fault of pss, not of the scene; please report it.",

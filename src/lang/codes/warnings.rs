@@ -154,4 +154,13 @@ pub const CODES: &[Code] = &[
         "The channels of `rgb` are linear and reach from 0 to 1; write bytes as `#ff8000`.",
         ["let a = rgb(255, 128, 0)", "let a = #ff8000"],
     ),
+    code(
+        "W0206",
+        "A scene is blessed that says of no number what it shall be.",
+        "Let it expect what a formula knows of it, so that a wrong golden is seen: `expect volume(part) ~= 6.43 within 0.1%`.",
+        [
+            "$ pss test scene.pss --bless\nrender(size: [8, 8], samples: 1)\ndraw sphere(r: 1)",
+            "$ pss test scene.pss --bless\nrender(size: [8, 8], samples: 1)\ndraw sphere(r: 1)\nexpect volume(sphere(r: 1)) ~= 4.18879 within 0.1%",
+        ],
+    ),
 ];
