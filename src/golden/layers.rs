@@ -124,15 +124,16 @@ pub fn wrong(strays_found: Vec<usize>, mut wrong: Vec<usize>, pixels: usize) -> 
     wrong
 }
 
-/// The pixels that differ between two films of one size, ascending. `shot` is what the later shows.
-pub fn differing(was: &Film, now: &Film, shot: &Shot) -> Vec<usize> {
+/// The pixels that differ between two films of one size, ascending. `bar` says by how much the depth of a pixel may be off, world
+/// length; it is asked where depths differ by more than rounding.
+pub fn differing(was: &Film, now: &Film, bar: impl Fn(usize) -> f64) -> Vec<usize> {
     let (mut apart, mut off) = (Vec::new(), Vec::new());
     let edges = edges(was);
     for pixel in 0..edges.len() {
         let (a, b) = (Seen::at(was, pixel), Seen::at(now, pixel));
         if a.id != b.id {
             if edges[pixel] { apart.push(pixel) } else { off.push(pixel) }
-        } else if !a.agrees(&b, || bar(shot, now.size, pixel)) {
+        } else if !a.agrees(&b, || bar(pixel)) {
             off.push(pixel);
         }
     }
@@ -145,7 +146,7 @@ pub fn told(film: &Film, pixel: usize) -> String {
 }
 
 /// By how much the depth of a pixel may be off, world length, where it shows what is known within a bound only; else 0.
-fn bar(shot: &Shot, size: [u32; 2], pixel: usize) -> f64 {
+pub fn bar(shot: &Shot, size: [u32; 2], pixel: usize) -> f64 {
     let [x, y] = [pixel as u32 % size[0], pixel as u32 / size[0]].map(|n| f64::from(n) + 0.5);
     let ray = shot.camera.ray(x, y, size);
     let hit = shot.world.first(&ray, Interval::AHEAD, &mut Scratch::default());
@@ -159,4 +160,56 @@ pub fn shown(film: &Film) -> Vec<u8> {
         normal.map(|x| if id == 0.0 { 0 } else { (127.5 * (x + 1.0)).clamp(0.0, 255.0) as u8 })
     };
     (0..film.rgba.len()).flat_map(color).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A hundred by forty pixels, the left half of leaf 0 and the right of leaf 1: at most two may stray.
+    fn halves() -> Film {
+        let mut film = Film::new([100, 40], &LAYERS).unwrap();
+        for pixel in 0..4000 {
+            set(&mut film, pixel, if pixel % 100 < 50 { 1.0 } else { 2.0 }, 3.0, 1.0);
+        }
+        film
+    }
+
+    fn set(film: &mut Film, pixel: usize, id: f32, depth: f32, z: f32) {
+        for layer in &mut film.layers {
+            match layer.aov {
+                Aov::Depth => layer.data[pixel] = depth,
+                Aov::Leaf => layer.data[pixel] = id,
+                _ => layer.data[3 * pixel + 2] = z,
+            }
+        }
+    }
+
+    fn with(changes: &[(usize, f32, f32, f32)], bar: f64) -> Vec<usize> {
+        let (was, mut now) = (halves(), halves());
+        changes.iter().for_each(|&(pixel, id, depth, z)| set(&mut now, pixel, id, depth, z));
+        differing(&was, &now, |_| bar)
+    }
+
+    #[test]
+    fn a_few_pixels_at_an_edge_may_show_the_other_side() {
+        let strays = [(50, 1.0, 4.0, -1.0), (149, 2.0, 3.0, 1.0)];
+        assert!(with(&strays, 0.0).is_empty());
+        assert_eq!(
+            with(&[&strays[..], &[(250, 1.0, 3.0, 1.0)]].concat(), 0.0),
+            [50, 149, 250],
+            "three are many"
+        );
+        assert_eq!(with(&[(52, 1.0, 3.0, 1.0)], 0.0), [52], "no edge is near");
+    }
+
+    #[test]
+    fn depth_and_normal_are_held_to_rounding_or_to_what_a_scan_knows() {
+        let next = 3f32.next_up();
+        assert!(with(&[(7, 1.0, next, 1.0 - 5e-7)], 0.0).is_empty());
+        assert_eq!(with(&[(7, 1.0, 3.000_001, 1.0)], 0.0), [7]);
+        assert!(with(&[(7, 1.0, 3.000_001, 1.0)], 1e-6).is_empty());
+        assert_eq!(with(&[(7, 1.0, 3.0, 0.999)], 1.0), [7]);
+        assert_eq!(with(&[(7, 1.0, f32::NAN, 1.0)], 0.0), [7], "what is no number agrees with nothing");
+    }
 }

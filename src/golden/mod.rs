@@ -176,7 +176,7 @@ impl Goldens {
         compared.differs.extend(spans);
         if let (Some(was), Some(film)) = (&self.layers, &now.film) {
             let [old, new] = [was, film].map(|f| Picture { size: f.size, bytes: layers::shown(f) });
-            let find = || layers::differing(was, film, shot);
+            let find = || layers::differing(was, film, |pixel| layers::bar(shot, film.size, pixel));
             compared.pixels(
                 Kind::Layers,
                 [old, new],

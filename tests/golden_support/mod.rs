@@ -2,6 +2,7 @@
 //! that `pss test tests/goldens` runs on.
 #![allow(dead_code)]
 
+pub mod cases;
 pub mod operators;
 pub mod primitives;
 
@@ -58,6 +59,7 @@ impl Golden {
 pub fn all() -> Vec<Golden> {
     let mut all = operators::scenes();
     all.extend(primitives::scenes());
+    all.extend(cases::scenes());
     all
 }
 
