@@ -114,7 +114,7 @@ fn what_breaks_its_word_is_not_blessed_and_what_gives_none_is_warned_of() {
     assert_eq!(folder.files(), ["a.pss"]);
     folder.write("a.pss", "draw sphere(r: 1)\nexpect solid(sphere(r: 1))\n");
     let ran = folder.run(&["test", ".", "--bless"]);
-    assert!(ran.code == 0 && ran.stderr.contains("warning[W0204]"), "{}", ran.stderr);
+    assert!(ran.code == 0 && ran.stderr.contains("warning[W0206]"), "{}", ran.stderr);
     assert_eq!(folder.files(), FILES);
 }
 

@@ -46,7 +46,7 @@ pub fn bless(scene: &Path, loaded: &Loaded, console: &Console) -> Result<Kept, V
         let message = format!("`{}` is blessed, and expects no number", scene.display());
         let help =
             "a wrong golden is seen by what a formula knows: `expect volume(part) ~= 6.43 within 0.1%`";
-        console.show(&[Diagnostic::warning("W0204", message).help(help)], &loaded.sources);
+        console.show(&[Diagnostic::warning("W0206", message).help(help)], &loaded.sources);
     }
     let changed = blessed
         .compared
