@@ -137,7 +137,9 @@ impl Film {
             })
             .collect::<Option<Vec<Layer>>>();
         let rgba = filled(pixels, [0.0; 4]);
-        rgba.zip(layers).map(|(rgba, layers)| Film { size, rgba, layers }).ok_or(NoRoom { size, bytes: pixels * pixel_bytes(aovs) })
+        rgba.zip(layers)
+            .map(|(rgba, layers)| Film { size, rgba, layers })
+            .ok_or(NoRoom { size, bytes: pixels * pixel_bytes(aovs) })
     }
 
     /// The colour of a pixel.

@@ -147,7 +147,8 @@ fn o9_too_little_memory_is_said_with_what_is_wanted() {
         assert!(ran.stderr.contains("489 MiB are wanted"), "{}", ran.stderr);
     }
     // With next to nothing a program cannot even say so.
-    let ran = folder.run_within(64 << 20, &["render", "a.pss", "-o", "b.png", "-t", "1", "--size", "9000x9000"]);
+    let ran =
+        folder.run_within(64 << 20, &["render", "a.pss", "-o", "b.png", "-t", "1", "--size", "9000x9000"]);
     assert!([0, 70, 71].contains(&ran.code), "{} {}", ran.code, ran.stderr);
     assert!(ran.code == 0 || folder.read("b.png") == b"old");
 }
@@ -223,8 +224,13 @@ fn an_exr_says_what_it_was_made_of_and_nothing_of_how() {
     let film = |name: &str| read_exr(&folder.path().join(name)).unwrap();
     assert_eq!(film("a.exr"), film("c.exr"));
     let says = |word: &str| bytes.windows(word.len()).any(|w| w == word.as_bytes());
-    for word in ["pss.scene", "pss.settings", "size 64x48, samples 2", "software", concat!("pss ", env!("CARGO_PKG_VERSION"))]
-    {
+    for word in [
+        "pss.scene",
+        "pss.settings",
+        "size 64x48, samples 2",
+        "software",
+        concat!("pss ", env!("CARGO_PKG_VERSION")),
+    ] {
         assert!(says(word), "{word}");
     }
 }

@@ -110,14 +110,19 @@ fn o5_without_a_file_nothing_is_kept() {
 fn o6_a_state_of_another_picture_is_refused_and_what_differs_is_said() {
     let folder = folder();
     folder.write("cloud.ply", cli_common::ply_with_normals(&cli_common::sphere(400, 2.0)));
-    folder.write("c.pss", "let r = 1\ndraw points(\"cloud.ply\")\ndraw sphere(r: r)\nrender(size: [64, 40])\n");
+    folder
+        .write("c.pss", "let r = 1\ndraw points(\"cloud.ply\")\ndraw sphere(r: r)\nrender(size: [64, 40])\n");
     let stop = ["render", "c.pss", "-o", "b.png", "--time-limit", "0"];
     assert_eq!(folder.run(&stop).code, 75);
     let kept = folder.read(STATE);
     let refused = |args: &[&str], word: &str| {
         let ran = folder.run(&[&["render", "c.pss", "-o", "b.png", "--resume"], args].concat());
         assert_eq!(ran.code, 65, "{word}: {}", ran.stderr);
-        assert!(ran.stderr.contains("E0610") && ran.stderr.contains(&format!("not the same: {word}")), "{}", ran.stderr);
+        assert!(
+            ran.stderr.contains("E0610") && ran.stderr.contains(&format!("not the same: {word}")),
+            "{}",
+            ran.stderr
+        );
         assert_eq!(folder.read(STATE), kept, "it is left as it was");
     };
     refused(&["--spp", "3"], "the settings");
@@ -175,7 +180,8 @@ fn o7_a_damaged_state_loses_the_damaged_tile_and_those_after_it() {
         assert_eq!(ran.code, 0, "{what}: {}", ran.stderr);
         assert_eq!(folder.read("b.png"), whole, "{what}");
         // A head that is cut to nothing is no state.
-        let said = ["are damaged", "cannot be read", "nothing is kept"].iter().any(|w| ran.stderr.contains(w));
+        let said =
+            ["are damaged", "cannot be read", "nothing is kept"].iter().any(|w| ran.stderr.contains(w));
         assert!(said, "{what}: {}", ran.stderr);
     }
     folder.write(STATE, &state);

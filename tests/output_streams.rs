@@ -103,7 +103,9 @@ fn o10_a_panic_in_a_tile_costs_that_tile_alone() {
     let layout = Layout { window: [0, 0, 200, 150], aovs: settings().aov };
     let mut claim = Claim::new(&folder.path().join("a.png")).unwrap();
     let (done, keeper) = painted(&Mined(true), claim.begin(&IDENTITY, layout.clone()).unwrap());
-    assert!(matches!(&done.failed, Some(RenderError::Panicked { message, .. }) if message == "the mine went off"));
+    assert!(
+        matches!(&done.failed, Some(RenderError::Panicked { message, .. }) if message == "the mine went off")
+    );
     assert_eq!(done.tiles, 7 * 5);
     assert!((1..done.tiles).contains(&done.missing), "{} missing", done.missing);
     assert_eq!(keeper.state.len(), done.tiles - done.missing);
@@ -218,7 +220,8 @@ fn a_large_picture_takes_little_memory() {
     let folder = Folder::new();
     folder.write("a.pss", "draw sphere(r: 1)\nrender(integrator: \"flat\", samples: 1)\n");
     let peak = |size: &str, crop: &str| {
-        let args = ["render", "a.pss", "-o", "a.exr", "-o", "a.png", "--size", size, "--crop", crop, "--quiet"];
+        let args =
+            ["render", "a.pss", "-o", "a.exr", "-o", "a.png", "--size", size, "--crop", crop, "--quiet"];
         let ran = folder.run(&[&args[..], &["--stats-json", "s.json"]].concat());
         assert_eq!(ran.code, 0, "{}", ran.stderr);
         let stats: serde_json::Value = serde_json::from_slice(&folder.read("s.json")).unwrap();

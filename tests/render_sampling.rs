@@ -19,7 +19,11 @@ fn scene(render: &str) -> String {
 }
 
 fn shown(film: &Film) -> Vec<f64> {
-    film.rgba.iter().flat_map(|p| [p[0], p[1], p[2]]).map(|c| srgb::encode(f64::from(c).clamp(0.0, 1.0))).collect()
+    film.rgba
+        .iter()
+        .flat_map(|p| [p[0], p[1], p[2]])
+        .map(|c| srgb::encode(f64::from(c).clamp(0.0, 1.0)))
+        .collect()
 }
 
 fn rmse(a: &Film, b: &Film) -> f64 {
@@ -70,7 +74,10 @@ fn a_crop_of_a_picture_to_an_error_has_the_pixels_of_the_whole() {
     for y in 0..29 {
         for x in 0..37 {
             assert_eq!(part.pixel(x, y), whole.pixel(x + 13, y + 9), "{x} {y}");
-            assert_eq!(part.layers[0].data[(37 * y + x) as usize], whole.layers[0].data[(61 * (y + 9) + x + 13) as usize]);
+            assert_eq!(
+                part.layers[0].data[(37 * y + x) as usize],
+                whole.layers[0].data[(61 * (y + 9) + x + 13) as usize]
+            );
         }
     }
 }

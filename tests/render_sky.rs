@@ -74,7 +74,10 @@ fn a_floor_gets_the_cosine_weighed_light_of_its_half_of_the_picture() {
     for integrator in ["direct", "path"] {
         let film = film_in(folder.path(), &floor("light(image: \"sky.exr\")", integrator)).unwrap();
         let (seen, error) = mean(&film, 0);
-        assert!((seen - wanted).abs() < 4.0 * error + 1e-3 * wanted, "{integrator}: {seen} +- {error}, not {wanted}");
+        assert!(
+            (seen - wanted).abs() < 4.0 * error + 1e-3 * wanted,
+            "{integrator}: {seen} +- {error}, not {wanted}"
+        );
         assert!(error < 0.01 * wanted, "the window is aimed at: {error}");
     }
 }
@@ -136,13 +139,17 @@ fn what_a_spherical_camera_sees_can_be_a_sky() {
 fn what_is_no_picture_of_a_sky_is_told() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("text.exr"), "no picture").unwrap();
-    fs::write(folder.path().join("half.exr"), &sky([64, 32], |x, y| [x as f32, y as f32, 1.0])[..900]).unwrap();
-    for (name, word) in [("text.exr", "neither"), ("half.exr", "whole"), ("none.exr", "none.exr"), ("../sky.exr", "..")] {
+    fs::write(folder.path().join("half.exr"), &sky([64, 32], |x, y| [x as f32, y as f32, 1.0])[..900])
+        .unwrap();
+    for (name, word) in
+        [("text.exr", "neither"), ("half.exr", "whole"), ("none.exr", "none.exr"), ("../sky.exr", "..")]
+    {
         let told = film_in(folder.path(), &floor(&format!("light(image: {name:?})"), "direct")).unwrap_err();
         assert!(told.contains(word), "{name}: {told}");
     }
     fs::write(folder.path().join("sky.exr"), sky([8, 4], |_, _| [0.5; 3])).unwrap();
-    let told = film_in(folder.path(), &floor("light(image: \"sky.exr\", at: [1, 2, 3])", "direct")).unwrap_err();
+    let told =
+        film_in(folder.path(), &floor("light(image: \"sky.exr\", at: [1, 2, 3])", "direct")).unwrap_err();
     assert!(told.contains("`at`"), "{told}");
     // Black everywhere: dark, and no error.
     fs::write(folder.path().join("sky.exr"), sky([8, 4], |_, _| [0.0; 3])).unwrap();

@@ -32,10 +32,7 @@ pub fn write_rgb(size: [u32; 2], bytes: &[u8], sink: impl Write) -> io::Result<(
 }
 
 /// Writes a file that is made in memory: the encoder takes no sinks that are borrowed.
-fn at_once(
-    mut sink: impl Write,
-    encode: impl FnOnce(Shared<Vec<u8>>) -> io::Result<()>,
-) -> io::Result<()> {
+fn at_once(mut sink: impl Write, encode: impl FnOnce(Shared<Vec<u8>>) -> io::Result<()>) -> io::Result<()> {
     let bytes = Shared::new(Vec::new());
     encode(bytes.clone())?;
     let bytes = bytes.with(|bytes| Ok(std::mem::take(bytes)))?;

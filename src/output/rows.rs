@@ -50,10 +50,7 @@ pub trait Encode: Send {
 }
 
 /// Writes a whole film.
-pub fn write_film<E: Encode>(
-    film: &Film,
-    begin: impl FnOnce(&Picture) -> io::Result<E>,
-) -> io::Result<()> {
+pub fn write_film<E: Encode>(film: &Film, begin: impl FnOnce(&Picture) -> io::Result<E>) -> io::Result<()> {
     let aovs = film.layers.iter().map(|layer| layer.aov).collect();
     let picture = Picture { size: film.size, aovs, ..Picture::new(&Settings::default()) };
     let mut encoder = begin(&picture)?;

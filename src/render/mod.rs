@@ -229,7 +229,8 @@ mod tests {
         let shuffled = Cut { order: by_hash, ..Cut::default() };
         assert_eq!(a, render_whole(&Screen, &view, &Progress::default(), &shuffled).unwrap());
         // A slab for each row of tiles.
-        let b = render_whole(&Screen, &view, &Progress::default(), &Cut { slab_bytes: 1, ..shuffled }).unwrap();
+        let b =
+            render_whole(&Screen, &view, &Progress::default(), &Cut { slab_bytes: 1, ..shuffled }).unwrap();
         assert_eq!(a, b);
     }
 }

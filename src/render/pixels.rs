@@ -5,8 +5,8 @@
 //! how single samples differ, and still above it. A quarter may miss what is rare, so neighbours are judged together, within
 //! parts of the picture that are the same whatever is cropped.
 
-use super::integrator::Painter;
 use super::Progress;
+use super::integrator::Painter;
 use super::layers::{self, Sums};
 use super::sampler::PixelSampler;
 use super::scenery::{Scenery, Seen, Tracer};
@@ -94,7 +94,9 @@ impl<S: Scenery> Painter<'_, S> {
             if part.has(at) && !film.layers.is_empty() {
                 pixel.centre = Some(self.centre(tracer, at, tile, film));
             }
-            self.sample(tracer, at, (pixel, first), progress, |i| (4 * u64::from(i) / u64::from(first)) as usize);
+            self.sample(tracer, at, (pixel, first), progress, |i| {
+                (4 * u64::from(i) / u64::from(first)) as usize
+            });
         }
         while let Some(open) = self.open(cell, &pixels) {
             for ((at, pixel), _) in cell.each().zip(&mut pixels).zip(open).filter(|(_, open)| *open) {

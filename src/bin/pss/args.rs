@@ -329,6 +329,12 @@ pub struct RenderArgs {
     /// Stay, and make the picture again whenever the scene or a file that it reads changes
     #[arg(long)]
     pub watch: bool,
+    /// Draw the picture in the terminal while it is made
+    #[arg(long)]
+    pub preview: bool,
+    /// Show the picture while it is made in a viewer that speaks the protocol of tev
+    #[arg(long, value_name = "HOST:PORT")]
+    pub display_server: Option<String>,
     /// Say nothing but errors
     #[arg(short, long)]
     pub quiet: bool,

@@ -23,7 +23,12 @@ pub struct Identities {
 impl Identities {
     /// Reads `inputs` again to hash them: a tenth of the time that reading took to understand them. A file that is gone by
     /// now counts as empty.
-    pub fn new(args: &RenderArgs, settings: &Settings, sources: &SourceMap, inputs: &[PathBuf]) -> Identities {
+    pub fn new(
+        args: &RenderArgs,
+        settings: &Settings,
+        sources: &SourceMap,
+        inputs: &[PathBuf],
+    ) -> Identities {
         let mut scene = Hasher::new();
         for file in sources.files() {
             part(&mut scene, file.text.as_bytes());

@@ -62,7 +62,9 @@ impl Keeping {
                     }
                     state = Some(found);
                 }
-                None => told = Some(warning("what was kept of an earlier run cannot be read; it begins anew")),
+                None => {
+                    told = Some(warning("what was kept of an earlier run cannot be read; it begins anew"))
+                }
             }
         } else if claim.has_state() {
             let given_up = warning("what was kept of an earlier run is given up");

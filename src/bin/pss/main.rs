@@ -15,6 +15,7 @@ mod goldens;
 mod identity;
 mod junit;
 mod keeping;
+mod live;
 mod load;
 mod lsp;
 mod making;

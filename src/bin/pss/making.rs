@@ -12,6 +12,7 @@ use tempfile::SpooledTempFile;
 
 use crate::console::{self, Failure};
 use crate::keeping::Keeping;
+use crate::live::Live;
 
 /// A picture for standard output waits in memory up to this size, bytes, and then on the disk.
 const SPOOL_BYTES: usize = 64 << 20;
@@ -22,13 +23,20 @@ pub struct Making {
     stdout: Option<(Box<dyn Encode>, Spool)>,
     /// What is kept for a later run, if anything is.
     pub keeping: Option<Keeping>,
+    /// Who is shown it while it is made.
+    pub live: Live,
     /// Why an output failed.
     pub failure: Option<OutputError>,
 }
 
 impl Making {
     /// Begins all files; `-` is standard output.
-    pub fn begin(outputs: &[PathBuf], picture: &Picture, keeping: Option<Keeping>) -> Result<Making, Failure> {
+    pub fn begin(
+        outputs: &[PathBuf],
+        picture: &Picture,
+        keeping: Option<Keeping>,
+        live: Live,
+    ) -> Result<Making, Failure> {
         let (mut files, mut stdout) = (Vec::new(), None);
         for path in outputs {
             if path.as_os_str() == "-" {
@@ -41,7 +49,7 @@ impl Making {
                 files.push(Growing::begin(path, picture)?);
             }
         }
-        Ok(Making { files, stdout, keeping, failure: None })
+        Ok(Making { files, stdout, keeping, live, failure: None })
     }
 
     /// The files that are there for now and have to go.
@@ -96,10 +104,17 @@ impl Onlooker for Making {
     }
 
     fn recall(&mut self, tile: &Tile) -> Option<(Film, Work)> {
-        self.keeping.as_mut()?.recall(tile)
+        let (film, work) = self.keeping.as_mut()?.recall(tile)?;
+        self.live.show(&film, [tile.x, tile.y], tile);
+        Some((film, work))
     }
 
     fn painted(&mut self, slab: &mut Slab, moment: Moment) {
+        if let Some((tile, _)) = slab.fresh.last()
+            && moment == Moment::Tile
+        {
+            self.live.show(&slab.film, slab.at, tile);
+        }
         if let Some(keeping) = &mut self.keeping {
             keeping.painted(slab, moment);
         }

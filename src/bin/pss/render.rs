@@ -14,6 +14,7 @@ use crate::args::{ProgressMode, RenderArgs};
 use crate::console::{Console, Failure};
 use crate::identity::Identities;
 use crate::keeping::Keeping;
+use crate::live::Live;
 use crate::load::{self, Loaded};
 use crate::making::Making;
 use crate::progress;
@@ -94,9 +95,11 @@ fn begin(
     console: &Console,
 ) -> Result<Making, Failure> {
     let settings = &loaded.shot.settings;
+    let name = outputs.first().map_or("scene".into(), |path| path.to_string_lossy());
+    let live = Live::begin(args, &name, settings)?;
     let mut picture = Picture::new(settings);
     let Some(first) = outputs.iter().find(|path| !is_stdout(path)) else {
-        return Making::begin(outputs, &picture, None);
+        return Making::begin(outputs, &picture, None, live);
     };
     let identities = Arc::new(Identities::new(args, settings, &loaded.sources, &loaded.inputs));
     picture.about = output::about(&identities.scene(), &output::settings_line(settings));
@@ -104,7 +107,7 @@ fn begin(
         true => None,
         false => Some(Keeping::new(args, first, settings, &identities, console)?),
     };
-    Making::begin(outputs, &picture, keeping)
+    Making::begin(outputs, &picture, keeping, live)
 }
 
 /// Renders, as long as nothing stops it.
@@ -122,6 +125,7 @@ fn render(
     let shot = &loaded.shot;
     let render = || pss::render::render_for(shot, &progress, &mut making);
     let done = progress::show(mode, shot.settings.pixels(), &|| progress.done(), render);
+    making.live.end(console);
     let trouble = making.keeping.as_ref().and_then(Keeping::trouble);
     if !args.quiet {
         console.show(trouble.as_slice(), &loaded.sources);
@@ -148,7 +152,8 @@ fn stopped(done: &Done, mut making: Making, signal: Option<u8>, taken: &[PathBuf
             failure
         }
         None => {
-            let by = signal.map_or("the time limit", |number| if number == 2 { "an interrupt" } else { "a signal" });
+            let by = signal
+                .map_or("the time limit", |number| if number == 2 { "an interrupt" } else { "a signal" });
             let fault = signal.filter(|_| !kept).map_or(Fault::Stopped, Fault::Signal);
             Failure::from(Diagnostic::error("E0611", format!("stopped by {by}: {there}")).fault(fault))
         }
@@ -181,7 +186,12 @@ fn outputs(args: &RenderArgs) -> Result<Vec<PathBuf>, Failure> {
         return Err(usage("`--watch` wants files: a scene to look at, and a picture to write again"));
     }
     if args.watch && (args.resume || args.no_clobber || args.time_limit.is_some()) {
-        return Err(usage("`--watch` makes the picture anew each time: nothing is resumed, limited or left as it was"));
+        return Err(usage(
+            "`--watch` makes the picture anew each time: nothing is resumed, limited or left as it was",
+        ));
+    }
+    if args.preview && outputs.iter().any(|path| is_stdout(path)) {
+        return Err(usage("`--preview` draws on standard output, where the picture itself shall go"));
     }
     if outputs.iter().any(|path| is_stdout(path)) && io::stdout().is_terminal() {
         return Err(usage("a picture would only confuse the terminal; send standard output elsewhere"));

@@ -374,12 +374,7 @@ pub const CODES: &[Code] = &[
             "$ pss render scene.pss -o a.png --size 8x6\ndraw sphere(r: 1)",
         ],
     ),
-    code(
-        "E0612",
-        "Another run is making this picture.",
-        "Wait for it, or write to another file.",
-        NONE,
-    ),
+    code("E0612", "Another run is making this picture.", "Wait for it, or write to another file.", NONE),
     code("E0701", "Something nests too deep, or is too large to be read.", "Name parts with `let`.", NONE),
     code("E0702", "Something is understood but not carried out yet.", "Write the scene without it.", NONE),
     code(

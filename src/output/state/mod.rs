@@ -51,8 +51,7 @@ impl State {
 
     /// Reads what is there, and cuts off what is damaged.
     fn resume(file: File, layout: Layout) -> io::Result<(State, Found)> {
-        let mut state =
-            State { file, layout, tiles: HashMap::new(), end: head::LENGTH as u64, broken: None };
+        let mut state = State { file, layout, tiles: HashMap::new(), end: head::LENGTH as u64, broken: None };
         let length = state.file.seek(SeekFrom::End(0))?;
         state.file.seek(SeekFrom::Start(state.end))?;
         let mut reader = BufReader::with_capacity(1 << 20, &state.file);
