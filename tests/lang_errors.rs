@@ -201,7 +201,7 @@ error[E0410]: `.move` is called with arguments
  --> scene.pss:4:22
   |
 4 | let d = sphere(r: 1).move
-  |                      ^^^^^ no arguments
+  |                      ^^^^ no arguments
   = help: write `.move(...)`
 "#
 }

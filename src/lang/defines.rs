@@ -28,7 +28,7 @@ pub fn add(sources: &mut SourceMap, defines: &[(String, String)]) -> Vec<Define>
 /// Errors for names that no parameter has.
 pub fn unknown(defines: &[Define], known: &[&str]) -> Vec<Diagnostic> {
     let stranger = |d: &&Define| !known.contains(&d.name.as_str());
-    let list = listed(known.iter().copied(), |n| format!("`{n}`"));
+    let list = listed(known.iter().copied(), |n| format!("`{n}`")).replace("` `", "`, `");
     let error = |d: &Define| {
         let help = match nearest(&d.name, known.iter().copied()) {
             Some(near) => format!("did you mean `{near}`? The parameters are {list}"),

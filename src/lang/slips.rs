@@ -175,32 +175,36 @@ impl Slip<'_> {
 
     /// Blocks: one without a value, and what follows that of an `if` or a `for`.
     fn chosen(&self, word: &str, after_value: bool) -> Option<[String; 3]> {
-        if word == "}" && after_value && self.opened_by("{") {
+        let opens = self.bracket.filter(|_| word == "}" && after_value && self.opened_by("{"));
+        if opens.is_some_and(|(_, j)| self.text(&self.all[j + 1]) == "let") {
             return told(
                 "a block without a value",
                 "expected a value",
                 "a block ends with its value: `{ let a = 3  2 * a }`",
             );
         }
-        if self.before() != "}" || self.found.kind != TokenKind::Sign || matches!(word, "," | ":" | "=") {
+        // The grammar may give up at the end of the block, before what follows it.
+        let i = self.i + usize::from(opens.is_some());
+        let sign = self.all.get(i).filter(|t| t.kind == TokenKind::Sign).map(|t| self.text(t))?;
+        if self.text(&self.all[i.checked_sub(1)?]) != "}" || matches!(sign, "," | ":" | "=") {
             return None;
         }
-        let begins = self.value_begins()?;
-        let whole = if begins == "for" { "(for i in 0..3 { i })" } else { "(if a { b } else { c })" };
+        let begins = self.value_begins(i)?;
+        let (article, whole) = match begins {
+            "for" => ("a", "(for i in 0..3 { i })"),
+            _ => ("an", "(if a { b } else { c })"),
+        };
         told(
-            format!(
-                "`{word}` follows the last block of a{} `{begins}`",
-                if begins == "if" { "n" } else { "" }
-            ),
-            "the value ends before it",
-            format!("put parentheses around all of it: `{whole} {word} d`"),
+            format!("`{sign}` follows the last block of {article} `{begins}`"),
+            "the value ends here",
+            format!("put parentheses around all of it: `{whole} {sign} d`"),
         )
     }
 
-    /// The `if` or the `for` whose last block ends right before.
-    fn value_begins(&self) -> Option<&'static str> {
+    /// The `if` or the `for` whose last block ends right before a token.
+    fn value_begins(&self, i: usize) -> Option<&'static str> {
         let mut depth = 0usize;
-        for j in (0..self.i).rev() {
+        for j in (0..i).rev() {
             let token = &self.all[j];
             match (token.kind, self.text(token)) {
                 (TokenKind::Close, _) => depth += 1,
