@@ -129,10 +129,10 @@ pub fn wrong(strays_found: Vec<usize>, mut wrong: Vec<usize>, pixels: usize) -> 
 pub fn differing(was: &Film, now: &Film, bar: impl Fn(usize) -> f64) -> Vec<usize> {
     let (mut apart, mut off) = (Vec::new(), Vec::new());
     let edges = edges(was);
-    for pixel in 0..edges.len() {
+    for (pixel, edge) in edges.iter().enumerate() {
         let (a, b) = (Seen::at(was, pixel), Seen::at(now, pixel));
         if a.id != b.id {
-            if edges[pixel] { apart.push(pixel) } else { off.push(pixel) }
+            if *edge { apart.push(pixel) } else { off.push(pixel) }
         } else if !a.agrees(&b, || bar(pixel)) {
             off.push(pixel);
         }

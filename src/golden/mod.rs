@@ -287,10 +287,9 @@ pub fn bless(
     inputs: &[PathBuf],
 ) -> Result<Blessed, GoldenError> {
     let paths = Kind::ALL.map(|kind| kind.beside(scene));
-    if goldens.is_empty() {
-        if let Some(path) = paths[1..].iter().find(|path| path.exists()) {
-            return Err(GoldenError::InTheWay { path: path.clone() });
-        }
+    let in_the_way = paths[1..].iter().find(|path| goldens.is_empty() && path.exists());
+    if let Some(path) = in_the_way {
+        return Err(GoldenError::InTheWay { path: path.clone() });
     }
     paths.iter().try_for_each(|path| output::check(path, inputs))?;
     output::check(&differences_beside(scene), inputs)?;

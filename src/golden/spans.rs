@@ -238,7 +238,7 @@ mod tests {
         let was = traces(LINE);
         let differs = |from: &str, to: &str| !differing(&was, &traces(&LINE.replace(from, to))).is_empty();
         for (from, to) in
-            [("ball", "bell"), ("~", ""), ("^", ""), ("<", ""), ("2:a..-", ""), ("-..0.5", "0.1:b..0.5")]
+            [("ball", "bell"), ("~", ""), ("^", ""), ("<", ""), (" 2:a..-", ""), ("-..0.5", "0.1:b..0.5")]
         {
             assert!(differs(from, to), "{from} {to}");
         }
