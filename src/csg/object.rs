@@ -184,7 +184,13 @@ impl Object {
         self.core.holder(index)
     }
 
-    /// A box outside of which nothing is inside; unbounded where there is none.
+    /// For each leaf the box in which it can matter, empty where it never does: a line that misses all of them sees what it
+    /// would see without any.
+    pub fn reaches(&self) -> &[Aabb] {
+        &self.core.hierarchy.boxes
+    }
+
+    /// A box outside of which nothing is inside; unbounded where none is known.
     pub fn bounds(&self) -> Aabb {
         self.core.bounds
     }

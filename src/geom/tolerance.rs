@@ -97,3 +97,16 @@ pub const GOLDEN_NORMAL: f32 = 1e-6;
 
 /// The share of pixels that may show the leaf on the other side of an edge, where roundings decide on which side a ray passes.
 pub const GOLDEN_STRAYS: f64 = 5e-4;
+
+/// Lines that look for the end of a solid of some size stop where they find nothing farther than this: a round top is found to
+/// the square of how near a line comes to it, a corner by some thirty halvings, and nobody builds to a billionth.
+pub fn reached(size: f64) -> f64 {
+    POINTS * size
+}
+
+/// A measured number is taken to be the one it is compared with where its bar holds that one and is no wider than this share of
+/// it: some hundred thousand lines tell a ball's volume as well. What is wrong by more than its bar is told in any case.
+pub const SAME: f64 = 1e-5;
+
+/// A bar so narrow, as a share, is made of roundings: no more lines tell more.
+pub const ROUNDINGS: f64 = 1e-10;

@@ -1,7 +1,7 @@
 //! Which argument is which: by place, by name, missing, unknown, given twice. What a value must be is left
 //! to `check` and to the builtins themselves.
 
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 
 use super::ast::{Args, Expr, ExprKind};
 use super::budget::Budget;
@@ -174,8 +174,6 @@ pub struct Bound<'a> {
     pub geometry: Option<&'a dyn Geometry>,
     /// The materials made so far.
     pub materials: &'a [Call],
-    /// The widest bar of what was measured.
-    pub bars: &'a Cell<f64>,
     /// What is left of time and memory.
     pub budget: &'a Budget,
     /// What it warns of.

@@ -2,6 +2,7 @@
 
 use super::ast::InfixOp;
 use super::budget::Budget;
+use super::estimate::{self, is_measured, lifted};
 use super::value::{Eval, Located, Parts, Val};
 use crate::diag::Diagnostic;
 use crate::source::Span;
@@ -15,11 +16,16 @@ pub fn infix(op: InfixOp, a: &Located, b: &Located, sign: Span, budget: &Budget)
             same.map(|same| Val::Bool(same == (op == InfixOp::Equal)))
         }
         InfixOp::AtMost | InfixOp::AtLeast | InfixOp::Below | InfixOp::Above => order(op, &a.value, &b.value),
-        InfixOp::Range => match (&a.value, &b.value) {
+        InfixOp::Range => match (&nominal(&a.value), &nominal(&b.value)) {
             (Val::Number(lo), Val::Number(hi)) => Some(Val::Range(*lo, *hi, false)),
             (Val::Angle(lo), Val::Angle(hi)) => Some(Val::Range(*lo, *hi, true)),
             _ => None,
         },
+        _ if is_measured(&a.value) || is_measured(&b.value) => {
+            let at = a.at.to(b.at);
+            estimate::infix(op, &a.value, &b.value, at, number)
+                .or_else(|| numeric(op, &nominal(&a.value), &nominal(&b.value), at))
+        }
         _ => numeric(op, &a.value, &b.value, a.at.to(b.at)),
     };
     let value = value.ok_or_else(|| refuse(op, a, b, sign))?;
@@ -31,6 +37,11 @@ pub fn infix(op: InfixOp, a: &Located, b: &Located, sign: Span, budget: &Budget)
 pub fn negate(a: &Located, sign: Span) -> Eval<Val> {
     match &a.value {
         Val::Number(x) => Ok(Val::Number(-x)),
+        value if is_measured(value) => {
+            let parts = estimate::components(value).unwrap_or_default();
+            let parts = parts.iter().filter_map(|part| lifted(&[part], |x| -x[0]));
+            Ok(estimate::gathered(parts.collect(), a.at))
+        }
         value => match value.parts() {
             Some((parts, of_angles)) => Ok(parts.map(|x| -x).value(of_angles, a.at)),
             None => Err(Diagnostic::error("E0203", format!("`-` cannot be put before {}", value.kind()))
@@ -44,6 +55,11 @@ pub fn negate(a: &Located, sign: Span) -> Eval<Val> {
                 .into()),
         },
     }
+}
+
+/// A measured number as if it were exact: angles have no bars.
+fn nominal(value: &Val) -> Val {
+    value.plain().map_or_else(|| value.clone(), Val::Number)
 }
 
 fn logic(op: InfixOp, a: &Located, b: &Located) -> Option<Val> {
@@ -71,7 +87,7 @@ pub fn equal(a: &Val, b: &Val, budget: &Budget, at: Span) -> Eval<Option<bool>> 
             let pairs = a.fields.iter().zip(&b.fields).map(|(a, b)| (&a.1, &b.1));
             all_equal(pairs, budget, at)?
         }
-        _ => None,
+        _ => return Ok(a.plain().zip(b.plain()).map(|(a, b)| a == b)),
     })
 }
 
@@ -137,6 +153,7 @@ fn number(op: InfixOp, a: f64, b: f64) -> f64 {
 pub fn finite(value: &Val, made_by: &str, at: Span) -> Eval<()> {
     let fine = match value {
         Val::Number(x) | Val::Angle(x) => x.is_finite(),
+        Val::Measured(estimate) => estimate.value.is_finite(),
         Val::List(_) => match value.parts() {
             Some((Parts::Many(v), _)) => v.iter().all(|x| x.is_finite()),
             _ => true,

@@ -112,7 +112,7 @@ fn unknown_type(word: &str) -> Diagnostic {
 
 fn type_of(default: &Located) -> Eval<&'static str> {
     match &default.value {
-        Val::Number(_) => Ok("number"),
+        Val::Number(_) | Val::Measured(_) => Ok("number"),
         Val::Angle(_) => Ok("angle"),
         Val::Color(_) => Ok("color"),
         Val::Text(..) => Ok("string"),

@@ -1,7 +1,7 @@
 //! Expressions to values. Names are looked up here; operators are left to `arithmetic` and `sets`, calls of
 //! declared things to `check`, builtins to their table, items to `items`.
 
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -9,12 +9,14 @@ use super::args::{Bound, Callee};
 use super::ast::{Args, Expr, ExprKind, Function, InfixOp, PrefixOp, Step, Unit, Word};
 use super::budget::{self, Budget, CHEAP};
 use super::builtins::{self, Builtin};
+use super::estimate::components;
 use super::flow::{range_count, range_value};
 use super::functions::Closure;
 use super::queries::Geometry;
 use super::scope::Locals;
 use super::unknown::{callable, no_member};
 use super::value::{Eval, List, Located, Stop, Val};
+use super::verdict::Doubts;
 use super::{arithmetic, check, literals, sets, units};
 use crate::diag::Diagnostic;
 use crate::scene::{Call, Catalog, Group, MaterialId, Shape, ShapeKind};
@@ -58,8 +60,8 @@ pub struct Machine<'a> {
     pub warned: HashSet<(&'static str, Option<Span>)>,
     /// Who measures shapes.
     pub geometry: Option<&'a dyn Geometry>,
-    /// The widest bar of what was measured since it was last set to zero.
-    pub bars: Cell<f64>,
+    /// What comparisons of what was measured left open.
+    pub doubts: Doubts,
 }
 
 impl Machine<'_> {
@@ -340,7 +342,6 @@ impl Machine<'_> {
             sources: self.sources,
             geometry: self.geometry,
             materials: &self.materials,
-            bars: &self.bars,
             budget: &self.budget,
             warnings: &warnings,
         })?;
@@ -404,6 +405,10 @@ impl Machine<'_> {
                 left = Located { value: Val::Bool(same == (*op == InfixOp::Equal)), at };
                 continue;
             }
+            if let Some(holds) = self.compare(*op, &left.value, &right.value) {
+                left = Located { value: Val::Bool(holds), at };
+                continue;
+            }
             left = Located { value: arithmetic::infix(*op, &left, &right, *sign, &self.budget)?, at };
         }
         Ok(left.value)
@@ -417,7 +422,7 @@ fn member(on: &Located, word: &str) -> Eval<Option<Val>> {
         Val::Record(record) => record.get(word).cloned(),
         Val::List(_) => {
             let axis = ["x", "y", "z", "w"].iter().position(|axis| *axis == word);
-            axis.and_then(|axis| on.value.numbers()?.get(axis).map(|x| Val::Number(*x)))
+            axis.and_then(|axis| components(&on.value)?.get(axis).cloned())
         }
         _ => None,
     })

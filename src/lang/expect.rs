@@ -2,11 +2,12 @@
 
 use super::arithmetic;
 use super::ast::{Expect, Expr};
+use super::estimate::is_measured;
 use super::eval::Machine;
 use super::nearly::{Measure, distance, size};
-use super::print::text;
 use super::queries::Asked;
 use super::value::{Eval, Located, Val};
+use super::verdict::Relation;
 use crate::diag::{Diagnostic, Fault};
 use crate::scene::{BooleanOp, Operand, Shape, ShapeKind};
 use crate::source::Span;
@@ -28,26 +29,66 @@ impl Machine<'_> {
     /// `None` where an expectation holds, else what to say.
     pub fn expect(&mut self, expect: &Expect) -> Eval<Option<Diagnostic>> {
         let at = expect.right.as_ref().map_or(expect.left.at, |(_, right)| expect.left.at.to(right.at));
-        self.bars.set(0.0);
-        let left = self.located(&expect.left)?;
         let Some((nearly, right)) = &expect.right else {
             if let Some((room, _)) = &expect.within {
                 let error = Diagnostic::error("E0802", "`within` belongs to a comparison");
                 return Err(error.at(room.at, "of what?").help("write `expect a ~= b within 1%`").into());
             }
-            return match left.value {
-                Val::Bool(true) => Ok(None),
-                Val::Bool(false) => Ok(Some(self.unmet(&expect.left, at)?)),
-                _ => Err(left
-                    .unlike("expect", "a condition")
-                    .help("compare it: `expect volume(part) ~= 6.43 within 0.5%`")
-                    .into()),
-            };
+            return self.verdict(&expect.left, at);
         };
+        self.doubts.level.set(0);
+        let left = self.located(&expect.left)?;
         let right = self.located(right)?;
         let room = self.room(expect, *nearly, [&left, &right])?;
+        if let Some(verdict) = self.measured(&left, &right, room, *nearly && expect.within.is_none()) {
+            return Ok(match verdict {
+                Some(true) => None,
+                Some(false) => Some(self.differs(&left, &right, room, at)),
+                None => Some(undecided(self.sides(&left.value, &right.value), at)),
+            });
+        }
         let holds = self.agree(&left, &right, room)?;
         Ok((!holds).then(|| self.differs(&left, &right, room, at)))
+    }
+
+    /// The verdict on a condition: what it says whichever way the comparisons in it go that stay open.
+    fn verdict(&mut self, condition: &Expr, at: Span) -> Eval<Option<Diagnostic>> {
+        let mut verdicts = [true; 2];
+        self.doubts.level.set(0);
+        for (verdict, taken) in verdicts.iter_mut().zip([false, true]) {
+            self.doubts.open.take();
+            let outside = self.doubts.taken.replace(Some(taken));
+            let said = self.located(condition);
+            self.doubts.taken.set(outside);
+            let said = said?;
+            let Val::Bool(holds) = said.value else {
+                let error = said.unlike("expect", "a condition");
+                return Err(error.help("compare it: `expect volume(part) ~= 6.43 within 0.5%`").into());
+            };
+            *verdict = holds;
+            if self.doubts.open.borrow().is_empty() {
+                return if holds { Ok(None) } else { Ok(Some(self.unmet(condition, at)?)) };
+            }
+        }
+        let open = self.doubts.open.take().swap_remove(0);
+        Ok(match verdicts {
+            [true, true] => None,
+            [false, false] => Some(self.unmet(condition, at)?),
+            _ => Some(undecided(open, at)),
+        })
+    }
+
+    /// The verdict on two sides of which one was measured; the inner `None` where it stays open, the outer where neither was.
+    fn measured(&self, a: &Located, b: &Located, room: Room, alone: bool) -> Option<Option<bool>> {
+        if !(is_measured(&a.value) || is_measured(&b.value)) {
+            return None;
+        }
+        let relation = match room {
+            Room::None => Relation::Same,
+            Room::Absolute(apart) => Relation::Within { apart, or_same: false },
+            Room::Share(share) => Relation::Within { apart: share * size(&b.value), or_same: alone },
+        };
+        self.related_all(&a.value, &b.value, relation)
     }
 
     fn room(&mut self, expect: &Expect, nearly: bool, [left, right]: [&Located; 2]) -> Eval<Room> {
@@ -123,7 +164,7 @@ impl Machine<'_> {
             let error = Diagnostic::error("E0708", "solids cannot be compared here").at(at, "no geometry");
             return Err(error.help("compare them in the scene itself").into());
         };
-        let asked = Asked { shape: &shape, materials: &self.materials, at };
+        let asked = Asked { shape: &shape, materials: &self.materials, at, level: 0 };
         let answer = geometry.is_empty(&asked);
         answer.map_err(|errors| match errors.into_iter().next() {
             Some(error) => error.into(),
@@ -139,9 +180,8 @@ impl Machine<'_> {
         if !op.compares() {
             return Ok(error);
         }
-        let sides = [self.located(first)?, self.located(second)?];
-        let [left, right] = sides.map(|side| text(&side.value));
-        Ok(error.note(format!("the left side is {left}{}, the right {right}", self.bar())))
+        let (left, right) = (self.located(first)?, self.located(second)?);
+        Ok(error.note(self.sides(&left.value, &right.value)))
     }
 
     fn differs(&self, left: &Located, right: &Located, room: Room, at: Span) -> Diagnostic {
@@ -152,13 +192,14 @@ impl Machine<'_> {
             return error.note(place);
         }
         let unit = self.measure(left).ok().flatten().map_or("", Measure::unit);
-        let apart = distance(&left.value, &right.value).map(|d| match room {
-            Room::Share(x) if size(&right.value) == 0.0 => format!(
+        let [a, b] = [left, right].map(|side| self.as_compared(&side.value, side.at));
+        let apart = distance(&a, &b).map(|d| match room {
+            Room::Share(x) if size(&b) == 0.0 => format!(
                 "; they differ by {d:.3e}{unit}, and {} % of zero are nothing: write how far, `within 0.001{unit}`",
                 short(100.0 * x)
             ),
             Room::Share(x) => {
-                let share = 100.0 * d / size(&right.value);
+                let share = 100.0 * d / size(&b);
                 format!(
                     "; they differ by {d:.3e}{unit}, {} %, where {} % are allowed",
                     short(share),
@@ -168,21 +209,16 @@ impl Machine<'_> {
             Room::Absolute(x) => format!("; they differ by {d:.3e}{unit}, where {x}{unit} is allowed"),
             Room::None => format!("; they differ by {d:.3e}{unit}"),
         });
-        let (left, right) = (text(&left.value), text(&right.value));
-        error.note(format!(
-            "the left side is {left}{}, the right {right}{}",
-            self.bar(),
-            apart.unwrap_or_default()
-        ))
+        error.note(self.sides(&left.value, &right.value) + &apart.unwrap_or_default())
     }
+}
 
-    /// The bar of what was measured.
-    fn bar(&self) -> String {
-        match self.bars.get() {
-            0.0 => String::new(),
-            bar => format!(" (+- {bar:.1e})"),
-        }
-    }
+/// The complaint that what was measured leaves open whether something holds.
+fn undecided(sides: String, at: Span) -> Diagnostic {
+    let error =
+        Diagnostic::error("E0801", "an expectation cannot be decided").at(at, "within the bar of error");
+    let error = error.note(format!("cannot be decided: {sides}")).fault(Fault::Unmet);
+    error.help("say how far the two sides may differ: `expect volume(part) ~= 6.43 within 0.01%`")
 }
 
 /// A number in few digits, however small.

@@ -1,7 +1,6 @@
 //! The items of a file to the [`Scene`]: definitions in the order they need each other, then cameras, lights,
 //! `render` and what is drawn.
 
-use std::cell::Cell;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -81,7 +80,7 @@ fn evaluated(
         warnings: Vec::new(),
         warned: HashSet::new(),
         geometry: reading.geometry,
-        bars: Cell::new(0.0),
+        doubts: Default::default(),
     };
     let mut reader = Reader {
         machine,

@@ -2,6 +2,7 @@
 
 use super::args::{Bound, Formal};
 use super::builtins::Builtin;
+use super::estimate::{is_measured, summed};
 use super::flow::{elements, range_count, room};
 use super::value::{Eval, List, Located, Val};
 use crate::num::hash::{Stream, mix};
@@ -65,7 +66,9 @@ fn sum(bound: &Bound) -> Eval<Val> {
     }
     let Some(first) = list.first().and_then(|first| first.value.numbers()) else {
         let numbers = list.iter().map(|item| item.number("list")).collect::<Eval<Vec<f64>>>()?;
-        return Ok(Val::Number(numbers.iter().sum()));
+        let values: Vec<&Val> = list.iter().map(|item| &item.value).collect();
+        let measured = if values.iter().any(|value| is_measured(value)) { summed(&values) } else { None };
+        return Ok(measured.unwrap_or_else(|| Val::Number(numbers.iter().sum())));
     };
     let mut total = vec![0.0; first.len()];
     for item in list.iter() {

@@ -3,6 +3,7 @@
 use super::args::{Bound, Formal};
 use super::ast::AngleUnit;
 use super::builtins::{Builtin, line};
+use super::estimate::{components, gathered, is_measured, lifted};
 use super::units;
 use super::value::{Eval, Located, Val};
 use crate::diag::Diagnostic;
@@ -52,7 +53,10 @@ pub const TABLE: &[Builtin] = &[
     line("asin", X, "The angle with this sine.", |b| to_angle(b, f64::asin)),
     line("acos", X, "The angle with this cosine.", |b| to_angle(b, f64::acos)),
     line("atan2", YX, "The angle from the x axis to [x, y].", atan2),
-    line("length", V, "The Euclidean length of a vector.", |b| Ok(Val::Number(norm(&vector(b, "v")?)))),
+    line("length", V, "The Euclidean length of a vector.", |b| {
+        let plain = norm(&vector(b, "v")?);
+        Ok(of_vectors(&[b.need("v")?], norm).unwrap_or(Val::Number(plain)))
+    }),
     line("normalize", V, "The vector with length 1.", normalize),
     line("dot", AB, "The scalar product.", dot),
     line("cross", AB, "The vector product.", cross),
@@ -61,6 +65,10 @@ pub const TABLE: &[Builtin] = &[
 
 fn each(bound: &Bound, f: fn(f64) -> f64) -> Eval<Val> {
     let x = bound.need("x")?;
+    if is_measured(&x.value) {
+        let parts = components(&x.value).unwrap_or_default();
+        return Ok(gathered(parts.iter().filter_map(|part| lifted(&[part], |x| f(x[0]))).collect(), x.at));
+    }
     match x.value.numbers() {
         Some(v) => Ok(Val::vector(v.into_iter().map(f), x.at)),
         None => Ok(Val::Number(f(x.number("x")?))),
@@ -76,6 +84,13 @@ fn each_or_angle(bound: &Bound, f: fn(f64) -> f64) -> Eval<Val> {
 }
 
 fn pairwise(a: &Located, b: &Located, f: impl Fn(f64, f64) -> f64) -> Eval<Val> {
+    if let (true, Some(u), Some(v)) =
+        (is_measured(&a.value) || is_measured(&b.value), components(&a.value), components(&b.value))
+        && (u.len() == v.len() || u.len() == 1 || v.len() == 1)
+    {
+        let pairs = (0..u.len().max(v.len())).map(|i| [&u[i % u.len()], &v[i % v.len()]]);
+        return Ok(gathered(pairs.filter_map(|pair| lifted(&pair, |x| f(x[0], x[1]))).collect(), a.at));
+    }
     let both = a.value.parts().zip(b.value.parts());
     let same = both.filter(|((_, a), (_, b))| a == b);
     if let Some(value) = same.and_then(|((u, of_angles), (v, _))| Some(u.zip(v, f)?.value(of_angles, a.at))) {
@@ -140,6 +155,12 @@ fn vector(bound: &Bound, name: &str) -> Eval<Vec<f64>> {
     }
 }
 
+/// A function of all numbers of some vectors, where one was measured.
+fn of_vectors(vectors: &[&Located], f: impl Fn(&[f64]) -> f64) -> Option<Val> {
+    let all = vectors.iter().map(|v| components(&v.value)).collect::<Option<Vec<_>>>()?.concat();
+    if all.iter().any(is_measured) { lifted(&all.iter().collect::<Vec<_>>(), f) } else { None }
+}
+
 fn norm(v: &[f64]) -> f64 {
     let largest = v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     if largest == 0.0 { 0.0 } else { largest * v.iter().map(|x| (x / largest).powi(2)).sum::<f64>().sqrt() }
@@ -154,7 +175,9 @@ fn normalize(bound: &Bound) -> Eval<Val> {
 fn dot(bound: &Bound) -> Eval<Val> {
     let a = vector(bound, "a")?;
     let b = bound.need("b")?.vector("b", a.len())?;
-    Ok(Val::Number(a.iter().zip(b).map(|(x, y)| x * y).sum()))
+    let sum = |both: &[f64]| (0..a.len()).map(|i| both[i] * both[a.len() + i]).sum();
+    let measured = of_vectors(&[bound.need("a")?, bound.need("b")?], sum);
+    Ok(measured.unwrap_or_else(|| Val::Number(sum(&[&a[..], &b].concat()))))
 }
 
 fn cross(bound: &Bound) -> Eval<Val> {

@@ -180,7 +180,7 @@ fn by_matrix(bound: &Bound) -> Eval<Val> {
 fn scale(bound: &Bound) -> Eval<Val> {
     let given = bound.need("factor")?;
     let factor = match given.value {
-        Val::Number(_) => DVec3::splat(given.number("factor")?),
+        Val::Number(_) | Val::Measured(_) => DVec3::splat(given.number("factor")?),
         _ => given.vec3("factor")?,
     };
     if factor.to_array().contains(&0.0) {

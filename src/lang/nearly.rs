@@ -30,7 +30,7 @@ impl Measure {
     /// That of a value, of a list if it is that of all that is in it; `None` for what is the same or not.
     pub fn of(value: &Val, budget: &Budget, at: Span) -> Eval<Option<Measure>> {
         Ok(match value {
-            Val::Number(_) => Some(Measure::Number),
+            Val::Number(_) | Val::Measured(_) => Some(Measure::Number),
             Val::Angle(_) => Some(Measure::Angle),
             Val::Color(_) => Some(Measure::Color),
             Val::List(list) => {
@@ -61,7 +61,7 @@ pub fn distance(a: &Val, b: &Val) -> Option<f64> {
             let mut pairs = a.items.iter().zip(&b.items);
             pairs.try_fold(0.0, |most: f64, (x, y)| Some(most.max(distance(&x.value, &y.value)?)))
         }
-        _ => None,
+        _ => a.plain().zip(b.plain()).map(|(a, b)| (a - b).abs()),
     }
 }
 
@@ -69,6 +69,7 @@ pub fn distance(a: &Val, b: &Val) -> Option<f64> {
 pub fn size(value: &Val) -> f64 {
     match value {
         Val::Number(x) | Val::Angle(x) => x.abs(),
+        Val::Measured(x) => x.value.abs(),
         Val::Color(channels) => channels.iter().map(|x| f64::from(x.abs())).fold(0.0, f64::max),
         Val::List(list) => list.items.iter().map(|item| size(&item.value)).fold(0.0, f64::max),
         _ => 0.0,
@@ -85,7 +86,7 @@ impl Machine<'_> {
         let operand = |shape: &Shape| Operand { shape: shape.clone(), at };
         let kind = ShapeKind::Boolean { op: BooleanOp::Xor, operands: vec![operand(a), operand(b)] };
         let both = Shape::new(kind, at);
-        let asked = |shape| Asked { shape, materials: &self.materials, at };
+        let asked = |shape| Asked { shape, materials: &self.materials, at, level: 0 };
         let point = inner_point(geometry, &asked(&both))?;
         let side = if geometry.inside(&asked(a), point).ok()? { "left" } else { "right" };
         Some(format!("{} is inside the {side} side alone", text(&Val::vector(point.to_array(), at))))
@@ -94,7 +95,10 @@ impl Machine<'_> {
 
 /// A point inside a shape: the middle of the longest stretch inside that the lines of a grid over its bounds meet.
 fn inner_point(geometry: &dyn Geometry, asked: &Asked) -> Option<DVec3> {
-    let bounds = geometry.bounds(asked).ok().filter(|b| b.is_finite() && !b.is_empty())?;
+    let bounds = geometry.bounds(asked).ok()?.bounds;
+    if bounds.is_empty() || !bounds.is_finite() {
+        return None;
+    }
     let share = |i: usize| (i as f64 + 0.5) / LINES as f64;
     let mut best: Option<(f64, DVec3)> = None;
     for axis in 0..3 {

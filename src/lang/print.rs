@@ -32,6 +32,7 @@ fn write(value: &Val, out: &mut String) {
     let _ = match value {
         // The two zeros are one number.
         Val::Number(x) => write!(out, "{}", x + 0.0),
+        Val::Measured(estimate) => write!(out, "{}", estimate.digits()),
         Val::Angle(x) => write!(out, "{}deg", x + 0.0),
         Val::Color([r, g, b]) => write!(out, "rgb({r}, {g}, {b})"),
         Val::Text(text, _) => write!(out, "{text:?}"),

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::args::{Bound, Formal};
 use super::budget;
 use super::builtins::{Builtin, line};
+use super::estimate::{Estimate, Question, Source};
 use super::value::{Eval, List, Located, Record, Val};
 use crate::diag::Diagnostic;
 use crate::geom::Aabb;
@@ -22,15 +23,30 @@ pub struct Asked<'a> {
     pub materials: &'a [Call],
     /// The place of the argument.
     pub at: Span,
+    /// How exactly: 0 as far as most want it, each level more some four times closer.
+    pub level: usize,
 }
 
 /// A number with a bar of error: the true one is within it but for one time in a thousand, or with certainty where the
 /// bar is zero.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, Copy, PartialEq, Default, Debug)]
 pub struct Measured {
     /// The number.
     pub value: f64,
     /// Half the width of the bar.
+    pub err: f64,
+    /// What the bar is held against: the number's own size, or that of what it is taken in.
+    pub size: f64,
+    /// Whether a level more may narrow the bar.
+    pub is_open: bool,
+}
+
+/// A box around a shape.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Extent {
+    /// The box; empty for nothing, unbounded where the shape is.
+    pub bounds: Aabb,
+    /// How far its sides may be off; zero where it is known without measuring.
     pub err: f64,
 }
 
@@ -52,8 +68,8 @@ pub type Answer<T> = Result<T, Vec<Diagnostic>>;
 
 /// Measures shapes. Answers depend on the shape alone.
 pub trait Geometry {
-    /// A box around the shape; empty for nothing, unbounded where the shape is.
-    fn bounds(&self, asked: &Asked) -> Answer<Aabb>;
+    /// The box around the shape.
+    fn bounds(&self, asked: &Asked) -> Answer<Extent>;
     /// Whether it has an inside everywhere: a solid, no sheet.
     fn is_solid(&self, asked: &Asked) -> Answer<bool>;
     /// Whether nothing is in it.
@@ -64,8 +80,8 @@ pub trait Geometry {
     fn volume(&self, asked: &Asked) -> Answer<Measured>;
     /// The area of the boundary, of sheets on one side; square units.
     fn area(&self, asked: &Asked) -> Answer<Measured>;
-    /// The middle of the inside, one bar for all coordinates.
-    fn centroid(&self, asked: &Asked) -> Answer<(DVec3, f64)>;
+    /// The middle of the inside.
+    fn centroid(&self, asked: &Asked) -> Answer<[Measured; 3]>;
     /// What a ray crosses, ascending.
     fn raycast(&self, asked: &Asked, from: DVec3, dir: DVec3) -> Answer<Vec<RayHit>>;
 }
@@ -86,15 +102,13 @@ pub const TABLE: &[Builtin] = &[
         ask(b, |g, asked| g.inside(asked, point)).map(Val::Bool)
     }),
     line("volume", SHAPE, "The volume of a solid, cubic units.", |b| {
-        measured(b, ask(b, |g, asked| g.volume(asked))?)
+        measured(b, Question::Volume, ask(b, |g, asked| g.volume(asked))?)
     }),
     line("area", SHAPE, "The area of a shape's boundary, square units; of a sheet that of one side.", |b| {
-        measured(b, ask(b, |g, asked| g.area(asked))?)
+        measured(b, Question::Area, ask(b, |g, asked| g.area(asked))?)
     }),
     line("centroid", SHAPE, "The middle of the inside of a solid.", |b| {
-        let (middle, err) = ask(b, |g, asked| g.centroid(asked))?;
-        b.bars.set(b.bars.get().max(err));
-        Ok(Val::vector(middle.to_array(), b.callee.at))
+        vector(b, ask(b, |g, asked| g.centroid(asked))?, Question::Middle)
     }),
     line("empty", SHAPE, "Whether nothing is in a shape.", |b| {
         ask(b, |g, asked| g.is_empty(asked)).map(Val::Bool)
@@ -117,7 +131,7 @@ fn ask<T>(bound: &Bound, question: impl FnOnce(&dyn Geometry, &Asked) -> Answer<
         let error = Diagnostic::error("E0708", format!("`{}` cannot be asked here", bound.callee.word));
         return Err(error.at(bound.callee.at, "no geometry").help("ask in the scene itself").into());
     };
-    let asked = Asked { shape, materials: bound.materials, at: given.at };
+    let asked = Asked { shape, materials: bound.materials, at: given.at, level: 0 };
     question(geometry, &asked).map_err(|errors| {
         let first = errors.into_iter().next();
         first
@@ -126,15 +140,25 @@ fn ask<T>(bound: &Bound, question: impl FnOnce(&dyn Geometry, &Asked) -> Answer<
     })
 }
 
-/// The number; its bar is kept for whoever compares it.
-fn measured(bound: &Bound, Measured { value, err }: Measured) -> Eval<Val> {
-    bound.bars.set(bound.bars.get().max(err));
-    Ok(Val::Number(value))
+/// The number, with its bar where it has one.
+fn measured(bound: &Bound, question: Question, measured: Measured) -> Eval<Val> {
+    if measured.err == 0.0 {
+        return Ok(Val::Number(measured.value));
+    }
+    let given = bound.need("shape")?;
+    let source = Source { question, shape: given.shape("shape")?.clone(), at: given.at };
+    Ok(Val::Measured(Arc::new(Estimate::of(measured, source.into()))))
+}
+
+fn vector(bound: &Bound, all: [Measured; 3], question: impl Fn(usize) -> Question) -> Eval<Val> {
+    let at = bound.callee.at;
+    let located = |(i, one): (usize, Measured)| Ok(Located { value: measured(bound, question(i), one)?, at });
+    Ok(Val::vector_of(all.into_iter().enumerate().map(located).collect::<Eval<Vec<_>>>()?))
 }
 
 fn bounds(bound: &Bound) -> Eval<Val> {
     let given = bound.need("shape")?;
-    let found = ask(bound, |g, asked| g.bounds(asked))?;
+    let Extent { bounds: found, err } = ask(bound, |g, asked| g.bounds(asked))?;
     if found.is_empty() || !found.is_finite() {
         let (what, help) = match found.is_empty() {
             true => ("is nothing, and has no bounds", "ask `empty(shape)` first"),
@@ -143,10 +167,19 @@ fn bounds(bound: &Bound) -> Eval<Val> {
         let error = Diagnostic::error("E0305", format!("the shape {what}"));
         return Err(error.at(given.at, "").help(help).into());
     }
-    let vector = |v: DVec3| Val::vector(v.to_array(), bound.callee.at);
-    let fields = [("min", found.min), ("max", found.max), ("size", found.size()), ("center", found.center())];
-    let fields = fields.map(|(name, v)| (name.to_owned(), vector(v)));
-    Ok(Val::Record(Arc::new(Record { kind: "bounds", fields: fields.into(), failed: Vec::new() })))
+    let size = found.diagonal();
+    let fields = [
+        ("min", found.min, 1.0),
+        ("max", found.max, 1.0),
+        ("size", found.size(), 2.0),
+        ("center", found.center(), 1.0),
+    ];
+    let field = |(name, v, bars): (&str, DVec3, f64)| {
+        let one = |value| Measured { value, err: bars * err, size, is_open: false };
+        Ok((name.to_owned(), vector(bound, v.to_array().map(one), |_| Question::Settled)?))
+    };
+    let fields = fields.into_iter().map(field).collect::<Eval<Vec<_>>>()?;
+    Ok(Val::Record(Arc::new(Record { kind: "bounds", fields, failed: Vec::new() })))
 }
 
 fn raycast(bound: &Bound) -> Eval<Val> {

@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::angles;
 use super::budget::{Budget, Held, weight};
 use super::builtins::Builtin;
+use super::estimate::Estimate;
 use super::functions::Closure;
 use crate::diag::Diagnostic;
 use crate::scene::{MaterialId, Shape};
@@ -47,6 +48,8 @@ pub type Eval<T> = Result<T, Stop>;
 pub enum Val {
     /// A number, or a length in scene units.
     Number(f64),
+    /// A number that comes of what was measured.
+    Measured(Arc<Estimate>),
     /// An angle, degrees.
     Angle(f64),
     /// A colour, linear.
@@ -208,20 +211,33 @@ impl Val {
         }
     }
 
+    /// A vector of numbers, measured or not.
+    pub fn vector_of(items: Vec<Located>) -> Val {
+        Val::List(Arc::new(List { items, depth: 1, _held: None }))
+    }
+
+    /// A number, measured or not.
+    pub fn plain(&self) -> Option<f64> {
+        match self {
+            Val::Number(x) => Some(*x),
+            Val::Measured(estimate) => Some(estimate.value),
+            _ => None,
+        }
+    }
+
     /// The numbers of a vector: a list of two to four numbers.
     pub fn numbers(&self) -> Option<Vec<f64>> {
         let Val::List(list) = self else { return None };
-        let number = |i: &Located| if let Val::Number(x) = i.value { Some(x) } else { None };
         if !(2..=4).contains(&list.items.len()) {
             return None;
         }
-        list.items.iter().map(number).collect()
+        list.items.iter().map(|item| item.value.plain()).collect()
     }
 
     /// What it is, with its article.
     pub fn kind(&self) -> &'static str {
         match self {
-            Val::Number(_) => "a number",
+            Val::Number(_) | Val::Measured(_) => "a number",
             Val::Angle(_) => "an angle",
             Val::Color(_) => "a colour",
             Val::Text(..) => "a string",
@@ -270,6 +286,7 @@ impl Located {
     pub fn as_number(&self, name: &str, wanted: &str) -> Eval<f64> {
         match &self.value {
             Val::Number(x) => bounded(*x, self.at),
+            Val::Measured(estimate) => bounded(estimate.value, self.at),
             Val::Angle(_) => {
                 Err(self.unlike(name, wanted).help("divide by a unit to get a number: `angle / 1deg`").into())
             }
@@ -281,7 +298,7 @@ impl Located {
     pub fn angle(&self, name: &str, written: &str) -> Eval<f64> {
         match &self.value {
             Val::Angle(x) => bounded(*x, self.at),
-            Val::Number(_) => {
+            Val::Number(_) | Val::Measured(_) => {
                 let angles::Meant { help, edit } = angles::meant(written, false);
                 Err(Diagnostic::error("E0502", format!("`{name}` wants an angle, found a bare number"))
                     .at(self.at, "which unit?")

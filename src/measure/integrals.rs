@@ -1,132 +1,209 @@
-//! Volumes, middles and areas as integrals over lines, with bars of error.
+//! Volumes, middles and areas as integrals over lines along the axes ([`super::adaptive`]).
 //!
 //! The volume is the integral over the plane across an axis of how long the line along it is inside; the middle weighs the
-//! middles of the spans by their lengths. The area is 2 pi R^2 times the mean number of crossings of lines through a ball of
-//! radius R, uniform in direction and offset (Crofton's formula; Santalo, Integral Geometry and Geometric Probability, I.2).
+//! middles of the spans by their lengths. Of the area of a face with unit normal n the plane across an axis sees |n_axis| dA, and
+//! the squares of n's coordinates are 1 together: so the area is the sum over the three axes of the integral of |n_axis| over
+//! the crossings of the line. It falls to zero at the outlines of a round shape, where a line sees much of it; a face along the
+//! axis adds nothing, and none of the lines does.
 //!
-//! Lines are Owen-scrambled Sobol points (Burley, "Practical Hash-based Owen Scrambling", 2020) in [`REPLICATES`] independent
-//! scramblings; the bar is Student's at one in a thousand over the replicates' means. Points are doubled until the bar is
-//! small enough or they are many. Where all replicates agree to rounding the bar is that.
+//! The cells begin with the boxes in which leaves matter, so that every leaf is looked at by lines of its own. A leaf of which
+//! nothing is seen by [`LOOKS`] lines through its box is missed: pieces of one shape that are much smaller than all of it, such
+//! as an implicit may have.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
-use crate::csg::{Scratch, Spans};
+use super::adaptive::{Found, Integral, Integrand, WIDTH};
+use crate::csg::{Leaf, Object, Scratch, Spans};
 use crate::geom::{Aabb, Interval, Ray, tolerance};
 use crate::lang::Measured;
 use crate::shot::World;
+use crate::solid::Cost;
 
-/// Independent scramblings.
-const REPLICATES: u32 = 16;
-/// Student's t at 0.9995, one-sided, for 15 degrees of freedom: two-sided one in a thousand.
-const STUDENT: f64 = 4.073;
-/// Points of a replicate: at first, and at most.
-const FIRST: u32 = 1 << 10;
-const MOST: u32 = 1 << 15;
-/// A bar so small, relative to the value, is small enough.
-const ENOUGH: f64 = 1e-5;
+/// Lines for one integral, at most, by what asking the costliest leaf takes.
+const MOST: [u64; 3] = [1 << 21, 1 << 20, 1 << 17];
 
-/// The volume, the middle, and the bar of the middle's coordinates; zero for nothing.
-pub fn volume(world: &World, bounds: &Aabb) -> (Measured, DVec3, f64) {
-    if bounds.is_empty() || bounds.size().min_element() == 0.0 {
-        return (Measured { value: 0.0, err: 0.0 }, DVec3::ZERO, 0.0);
+/// What bars of volumes shall be at first, relative to the value, by the same: a twentieth of what is commonly allowed.
+const ENOUGH: [f64; 3] = [5e-5, 5e-5, 2e-4];
+/// Areas may have bars by so much wider: every edge that a line sees is one to it, along three axes.
+const WIDER: f64 = 10.0;
+/// Rounds after which an axis is chosen.
+const PILOT: u32 = 2;
+/// And by which factor less each time that more is asked for.
+const FINER: f64 = 0.25;
+
+/// Something measured over lines, at one accuracy after the other; what is told of one does not depend on which were asked for
+/// before.
+#[derive(Debug)]
+pub struct Lines {
+    bounds: Aabb,
+    integral: Integral,
+    enough: f64,
+    /// How far faces may be off, world length.
+    shift: f64,
+    told: Vec<Found>,
+}
+
+impl Lines {
+    /// The volume of what lies in a box, and its middle: along the axis which lines differ least along, of like ones that of
+    /// the shortest side. A wall along the axis is an edge to lines, one across it is none. Where lines cost much the shortest
+    /// side is taken: there the ends of spans are most of what they see.
+    pub fn of_volume(world: &World, bounds: &Aabb) -> Lines {
+        const AXES: [&[usize]; 3] = [&[0], &[1], &[2]];
+        let mut order = [0, 1, 2];
+        order.sort_by(|a, b| bounds.size()[*a].total_cmp(&bounds.size()[*b]));
+        let of = |axis: usize| Lines::new(world, bounds, AXES[axis]);
+        if cost(world) == Cost::Heavy {
+            return of(order[0]);
+        }
+        let mut best: Option<(f64, Lines)> = None;
+        for axis in order {
+            let mut lines = of(axis);
+            let bar = lines.integral.pilot(PILOT, &Lengths { world, bounds: *bounds });
+            if best.as_ref().is_none_or(|(least, _)| bar < 0.5 * least) {
+                best = Some((bar, lines));
+            }
+            if best.as_ref().is_some_and(|(least, _)| *least == 0.0) {
+                break;
+            }
+        }
+        best.map_or_else(|| of(order[0]), |(_, lines)| lines)
     }
-    // Along the shortest side: there the ends of spans are most of what a line sees.
-    let axis = bounds.size().min_position();
-    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-    let face = bounds.size()[u] * bounds.size()[v];
-    let line = |at: [f64; 4], scratch: &mut Scratch, spans: &mut Spans| {
-        let mut origin = bounds.center();
-        origin[u] = bounds.min[u] + at[0] * bounds.size()[u];
-        origin[v] = bounds.min[v] + at[1] * bounds.size()[v];
-        world.spans(&Ray::new(origin, DVec3::AXES[axis]), Interval::ALL, scratch, spans);
-        let mut sums = [0.0; 4];
+
+    /// The area of it.
+    pub fn of_area(world: &World, bounds: &Aabb) -> Lines {
+        let lines = Lines::new(world, bounds, &[0, 1, 2]);
+        Lines { enough: WIDER * lines.enough, ..lines }
+    }
+
+    fn new(world: &World, bounds: &Aabb, axes: &[usize]) -> Lines {
+        let sheets = world.open().iter().map(|sheet| sheet.bounds);
+        let boxes: Vec<Aabb> = world.solids().reaches().iter().copied().chain(sheets).collect();
+        let leaves = || world.solids().leaves().iter().chain(world.open());
+        let cost = cost(world) as usize;
+        let shift = leaves().map(shift).fold(tolerance::cleanup(bounds.farthest()), f64::max);
+        let integral = Integral::new(bounds, &boxes, axes, MOST[cost]);
+        Lines { bounds: *bounds, integral, enough: ENOUGH[cost], shift, told: Vec::new() }
+    }
+
+    /// What is known at an accuracy, and whether the next is finer.
+    fn told(&mut self, level: usize, integrand: &impl Integrand) -> (Found, bool) {
+        while self.told.len() <= level && (self.told.is_empty() || !self.integral.is_spent()) {
+            let share = self.enough * FINER.powi(self.told.len() as i32);
+            let found = self.integral.refine(share, integrand);
+            self.told.push(found);
+        }
+        let last = self.told.len() - 1;
+        (self.told[level.min(last)], level < last || !self.integral.is_spent())
+    }
+
+    /// The volume, and the middle with one bar for its coordinates.
+    pub fn volume(&mut self, world: &World, level: usize) -> (Measured, DVec3, f64) {
+        let bounds = self.bounds;
+        let half = 0.5 * bounds.size();
+        let (found, is_open) = self.told(level, &Lengths { world, bounds });
+        let Found { values: [value, moments @ ..], bars } = found;
+        let err = bars[0] + self.rounding();
+        let volume =
+            Measured { value, err, size: self.size(value, bounds.size().element_product()), is_open };
+        if value <= 0.0 {
+            return (volume, DVec3::ZERO, 0.0);
+        }
+        let middle = DVec3::from_array(moments) / value;
+        let bar = (0..3).map(|i| half[i] * (bars[i + 1] + err * (1.0 + middle[i].abs())) / value);
+        (volume, bounds.center() + half * middle, bar.fold(0.0, f64::max))
+    }
+
+    /// The area of the boundary; of sheets that of one side.
+    pub fn area(&mut self, world: &World, level: usize) -> Measured {
+        let (found, is_open) = self.told(level, &Faces { world, bounds: self.bounds });
+        let (value, err) = (found.values[0], found.bars[0]);
+        let size = self.bounds.size();
+        let around = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
+        // A face that is moved changes its neighbours along its rim.
+        let err = err + 8.0 * self.shift * size.element_sum();
+        Measured { value, err, size: self.size(value, around), is_open }
+    }
+
+    /// What faces that are off add to the volume, by all that the box shows of them.
+    fn rounding(&self) -> f64 {
+        let size = self.bounds.size();
+        2.0 * self.shift * (size.x * size.y + size.y * size.z + size.z * size.x)
+    }
+
+    /// What a bar is held against: the value, and where there is none what it would be of the whole box.
+    fn size(&self, value: f64, of_box: f64) -> f64 {
+        if value.abs() <= 0.0 { of_box } else { value.abs() }
+    }
+}
+
+/// What the costliest leaf is.
+fn cost(world: &World) -> Cost {
+    let leaves = world.solids().leaves().iter().chain(world.open());
+    leaves.map(|leaf| leaf.solid.cost()).max().unwrap_or(Cost::Closed)
+}
+
+fn shift(leaf: &Leaf) -> f64 {
+    leaf.solid.shift_bound() * leaf.place.stretch + tolerance::cleanup(leaf.scale())
+}
+
+/// A box that holds all of an object that has an end.
+pub fn domain(object: &Object, extent: &Aabb) -> Aabb {
+    let bounds = object.bounds();
+    if bounds.is_finite() { bounds } else { bounds.intersection(*extent) }
+}
+
+/// A line along an axis through a place of the plane across it.
+pub fn line(bounds: &Aabb, axis: usize, place: [f64; 2]) -> Ray {
+    let mut origin = bounds.center();
+    origin[(axis + 1) % 3] = place[0];
+    origin[(axis + 2) % 3] = place[1];
+    Ray::new(origin, DVec3::AXES[axis])
+}
+
+/// How long lines are inside, and that times where the middles are, from the middle of the box in halves of its sides.
+struct Lengths<'a> {
+    world: &'a World,
+    bounds: Aabb,
+}
+
+impl Integrand for Lengths<'_> {
+    fn at(&self, axis: usize, place: [f64; 2], scratch: &mut Scratch, spans: &mut Spans) -> [f64; WIDTH] {
+        let ray = line(&self.bounds, axis, place);
+        spans.clear();
+        self.world.spans(&ray, Interval::ALL, scratch, spans);
+        let (center, half) = (self.bounds.center(), 0.5 * self.bounds.size());
+        let mut sums = [0.0; WIDTH];
         for span in spans.iter() {
-            let ends = [span.enter, span.exit].map(|end| end.map(|end| end.t));
-            let [Some(lo), Some(hi)] = ends else { continue };
-            let mut middle = origin;
-            middle[axis] += 0.5 * (lo + hi);
-            let weight = face * (hi - lo);
-            sums[0] += weight;
-            (0..3).for_each(|i| sums[i + 1] += weight * (middle[i] - bounds.center()[i]));
+            let Interval { lo, hi } = span.interval();
+            if !(lo.is_finite() && hi.is_finite()) {
+                continue;
+            }
+            let middle = (ray.at(0.5 * (lo + hi)) - center) / half;
+            sums[0] += hi - lo;
+            (0..3).for_each(|i| sums[i + 1] += (hi - lo) * middle[i]);
         }
         sums
-    };
-    let (means, errs) = replicated(line, bounds.farthest());
-    let value = means[0];
-    let middle = DVec3::new(means[1], means[2], means[3]) / value;
-    let bar = (1..4).map(|i| (errs[i] + errs[0] * middle[i - 1].abs()) / value).fold(0.0, f64::max);
-    (Measured { value, err: errs[0] }, bounds.center() + middle, bar)
-}
-
-/// The area of the boundary; of sheets that of one side.
-pub fn area(world: &World, bounds: &Aabb) -> Measured {
-    if bounds.is_empty() {
-        return Measured { value: 0.0, err: 0.0 };
     }
-    let radius = 0.5 * bounds.diagonal() * (1.0 + tolerance::MARGIN);
-    let line = |at: [f64; 4], scratch: &mut Scratch, spans: &mut Spans| {
-        let dir = on_sphere(at[0], at[1]);
-        let (u, v) = dir.any_orthonormal_pair();
-        let (r, (sin, cos)) = (radius * at[2].sqrt(), (std::f64::consts::TAU * at[3]).sin_cos());
-        let ray = Ray::new(bounds.center() + r * cos * u + r * sin * v, dir);
-        world.spans(&ray, Interval::ALL, scratch, spans);
-        let ends = spans.iter().map(|s| usize::from(s.enter.is_some()) + usize::from(s.exit.is_some()));
-        let mut sheets = Vec::new();
-        world.sheets(&ray, Interval::ALL, scratch, &mut sheets);
-        [(ends.sum::<usize>() + sheets.len()) as f64, 0.0, 0.0, 0.0]
-    };
-    let (means, errs) = replicated(line, 0.0);
-    let share = std::f64::consts::TAU * radius * radius;
-    Measured { value: share * means[0], err: share * errs[0] }
 }
 
-/// A direction by two numbers from 0 to 1, uniform (Archimedes).
-fn on_sphere(a: f64, b: f64) -> DVec3 {
-    let z = 2.0 * a - 1.0;
-    let (sin, cos) = (std::f64::consts::TAU * b).sin_cos();
-    let r = (1.0 - z * z).max(0.0).sqrt();
-    DVec3::new(r * cos, r * sin, z)
+/// What lines see of faces.
+struct Faces<'a> {
+    world: &'a World,
+    bounds: Aabb,
 }
 
-/// Means over points, and their bars; `reach` is the largest length in play, whose roundings a bar holds.
-fn replicated(
-    line: impl Fn([f64; 4], &mut Scratch, &mut Spans) -> [f64; 4] + Sync,
-    reach: f64,
-) -> ([f64; 4], [f64; 4]) {
-    let mut sums = [[0.0; 4]; REPLICATES as usize];
-    let (mut done, mut until) = (0, FIRST);
-    loop {
-        sums.par_iter_mut().enumerate().for_each(|(seed, sum)| {
-            let (mut scratch, mut spans) = (Scratch::default(), Spans::new());
-            for i in done..until {
-                let at = [0, 1, 2, 3].map(|dim| f64::from(sobol_burley::sample(i, dim, seed as u32)));
-                spans.clear();
-                let found = line(at, &mut scratch, &mut spans);
-                sum.iter_mut().zip(found).for_each(|(sum, x)| *sum += x);
-            }
-        });
-        done = until;
-        let (means, errs) = told(&sums, f64::from(done), reach);
-        if MOST <= done || errs[0] <= ENOUGH * means[0] {
-            return (means, errs);
+impl Integrand for Faces<'_> {
+    fn at(&self, axis: usize, place: [f64; 2], scratch: &mut Scratch, spans: &mut Spans) -> [f64; WIDTH] {
+        let ray = line(&self.bounds, axis, place);
+        spans.clear();
+        self.world.spans(&ray, Interval::ALL, scratch, spans);
+        let ends = spans.iter().flat_map(|span| [span.enter, span.exit]).flatten();
+        let mut sum: f64 = ends.map(|end| end.normal[axis].abs()).sum();
+        if !self.world.open().is_empty() {
+            let mut hits = Vec::new();
+            self.world.sheets(&ray, Interval::ALL, scratch, &mut hits);
+            sum += hits.iter().map(|hit| hit.boundary.normal[axis].abs()).sum::<f64>();
         }
-        until *= 2;
+        [sum, 0.0, 0.0, 0.0]
     }
-}
-
-fn told(sums: &[[f64; 4]; REPLICATES as usize], count: f64, reach: f64) -> ([f64; 4], [f64; 4]) {
-    let n = f64::from(REPLICATES);
-    let mut out = ([0.0; 4], [0.0; 4]);
-    for k in 0..4 {
-        let mean = sums.iter().map(|s| s[k] / count).sum::<f64>() / n;
-        let square = sums.iter().map(|s| (s[k] / count - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        out.0[k] = mean;
-        out.1[k] = STUDENT * (square / n).sqrt() + tolerance::noise(mean.abs());
-    }
-    // The ends of spans are known to roundings of the scene's own size.
-    if 0.0 < reach {
-        out.1[0] += out.0[0] * tolerance::cleanup(1.0);
-    }
-    out
 }

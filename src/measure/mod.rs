@@ -1,13 +1,18 @@
 //! What a scene asks of its shapes while it is evaluated: bounds, insides, volumes, areas. A shape is prepared as a scene that
-//! draws it alone; integrals are taken over lines ([`integrals`]), emptiness by the test lines of a check.
+//! draws it alone; integrals are taken over lines ([`integrals`]), ends of what is cut by them too ([`extent`]), emptiness by
+//! the test lines of a check.
 //!
-//! Answers depend on the shape, the files it names and the options alone, and are kept: a name that is asked about twice is
-//! prepared once.
+//! Answers depend on the shape, the files it names, the accuracy asked and the options alone, and are kept: a shape that is
+//! asked about twice, by its name or as the same text, is prepared once.
 
+mod adaptive;
+mod alike;
+mod cells;
+mod extent;
 mod integrals;
 
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -17,26 +22,33 @@ use crate::check::Evidence;
 use crate::csg::{Scratch, Spans};
 use crate::diag::Diagnostic;
 use crate::geom::{Aabb, Interval, Ray};
-use crate::lang::{Answer, Asked, Geometry, Measured, RayHit};
+use crate::lang::{Answer, Asked, Extent, Geometry, Measured, RayHit};
 use crate::prepare::{self, Options, Prepared};
-use crate::scene::{Draw, Scene, ShapeNode};
+use crate::scene::{BooleanOp, Draw, Scene, Shape, ShapeKind, ShapeNode};
 use crate::shot::{Hit, World};
+use crate::solid::table::{self, Build};
+use integrals::Lines;
 
 /// Measures shapes of one scene.
 #[derive(Debug)]
 pub struct Measuring {
     options: Options,
     /// By the node; the shape is kept, so that no other takes its place.
-    known: RefCell<HashMap<*const ShapeNode, (crate::scene::Shape, Rc<Known>)>>,
+    known: RefCell<HashMap<*const ShapeNode, (Shape, Rc<Known>)>>,
+    /// By what the shape says.
+    alike: RefCell<HashMap<String, Rc<Known>>>,
 }
 
 /// A shape, prepared, and what was asked of it.
 #[derive(Debug)]
 struct Known {
     prepared: Prepared,
-    volume: RefCell<Option<(Measured, DVec3, f64)>>,
-    area: RefCell<Option<Measured>>,
+    /// Whether its box may be larger than it: something was taken away.
+    is_cut: bool,
+    volume: RefCell<Option<Lines>>,
+    area: RefCell<Option<Lines>>,
     empty: RefCell<Option<bool>>,
+    reached: RefCell<Option<Extent>>,
 }
 
 impl Measuring {
@@ -44,7 +56,7 @@ impl Measuring {
     pub fn new(options: &Options) -> Measuring {
         let options =
             Options { measure_all: true, write_out: true, crop: None, camera: None, ..options.clone() };
-        Measuring { options, known: RefCell::default() }
+        Measuring { options, known: RefCell::default(), alike: RefCell::default() }
     }
 
     fn known(&self, asked: &Asked) -> Answer<Rc<Known>> {
@@ -57,13 +69,13 @@ impl Measuring {
             materials: asked.materials.to_vec(),
             ..Scene::default()
         };
-        let prepared = prepare::prepare(&scene, &self.options)?;
-        let known = Rc::new(Known {
-            prepared,
-            volume: RefCell::default(),
-            area: RefCell::default(),
-            empty: RefCell::default(),
-        });
+        let likeness = alike::likeness(&scene);
+        let alike = likeness.as_ref().and_then(|text| self.alike.borrow().get(text).cloned());
+        let known = match alike {
+            Some(known) => known,
+            None => Rc::new(Known::new(prepare::prepare(&scene, &self.options)?, is_cut(asked.shape))),
+        };
+        self.alike.borrow_mut().extend(likeness.map(|text| (text, known.clone())));
         self.known.borrow_mut().insert(key, (asked.shape.clone(), known.clone()));
         Ok(known)
     }
@@ -92,15 +104,45 @@ impl Measuring {
         Err(vec![error.help("cut it with something bounded: `shape & box(size: 100)`")])
     }
 
+    /// The volume, the middle, and the bar of the middle's coordinates; zero for nothing.
     fn integrals(&self, asked: &Asked) -> Answer<(Measured, DVec3, f64)> {
         let known = self.solid(asked)?;
-        let bounds = self.bounded(asked, &known, "volume")?;
-        let mut kept = known.volume.borrow_mut();
-        Ok(*kept.get_or_insert_with(|| integrals::volume(known.world(), &bounds)))
+        let bounds = known.domain(&self.bounded(asked, &known, "volume")?);
+        if bounds.is_empty() || bounds.size().min_element() == 0.0 {
+            return Ok((Measured::default(), DVec3::ZERO, 0.0));
+        }
+        let (world, mut kept) = (known.world(), known.volume.borrow_mut());
+        let lines = kept.get_or_insert_with(|| Lines::of_volume(world, &bounds));
+        Ok(lines.volume(world, asked.level))
     }
 }
 
+/// Whether anything is taken away in a shape, so that it may not reach the box of what it is made of.
+fn is_cut(shape: &Shape) -> bool {
+    let (mut open, mut seen) = (vec![shape], HashSet::new());
+    while let Some(shape) = open.pop() {
+        if !seen.insert(Arc::as_ptr(&shape.0)) {
+            continue;
+        }
+        match &shape.0.kind {
+            ShapeKind::Boolean { op, .. } if *op != BooleanOp::Union => return true,
+            ShapeKind::Leaf { call, .. }
+                if table::find(&call.word).is_some_and(|row| matches!(row.build, Build::Bounded { .. })) =>
+            {
+                return true;
+            }
+            kind => open.extend(kind.children()),
+        }
+    }
+    false
+}
+
 impl Known {
+    fn new(prepared: Prepared, is_cut: bool) -> Known {
+        let (volume, area) = (RefCell::default(), RefCell::default());
+        Known { prepared, is_cut, volume, area, empty: RefCell::default(), reached: RefCell::default() }
+    }
+
     fn world(&self) -> &World {
         &self.prepared.shot.world
     }
@@ -110,6 +152,27 @@ impl Known {
         let parts = self.prepared.outline.parts.iter().map(|part| part.bounds);
         let sheets = self.world().open().iter().map(|sheet| sheet.bounds);
         parts.chain(sheets).fold(Aabb::EMPTY, Aabb::union)
+    }
+
+    /// A box that no crossing is out of: that of a scan's surface, not of its samples.
+    fn domain(&self, extent: &Aabb) -> Aabb {
+        let sheets = self.world().open().iter().map(|sheet| sheet.bounds);
+        sheets.fold(integrals::domain(self.world().solids(), extent), Aabb::union)
+    }
+
+    /// The box that it reaches.
+    fn reached(&self) -> Extent {
+        let around = self.extent();
+        let is_asked =
+            self.is_cut && !around.is_empty() && around.is_finite() && self.world().open().is_empty();
+        if !is_asked {
+            return Extent { bounds: around, err: 0.0 };
+        }
+        *self.reached.borrow_mut().get_or_insert_with(|| match extent::reached(self.world(), &around) {
+            Some((bounds, err)) => Extent { bounds, err },
+            None if self.is_empty() => Extent { bounds: Aabb::EMPTY, err: 0.0 },
+            None => Extent { bounds: around, err: around.size().max_element() },
+        })
     }
 
     fn is_empty(&self) -> bool {
@@ -125,8 +188,8 @@ impl Known {
 }
 
 impl Geometry for Measuring {
-    fn bounds(&self, asked: &Asked) -> Answer<Aabb> {
-        Ok(self.known(asked)?.extent())
+    fn bounds(&self, asked: &Asked) -> Answer<Extent> {
+        Ok(self.known(asked)?.reached())
     }
 
     fn is_solid(&self, asked: &Asked) -> Answer<bool> {
@@ -152,18 +215,25 @@ impl Geometry for Measuring {
 
     fn area(&self, asked: &Asked) -> Answer<Measured> {
         let known = self.known(asked)?;
-        let bounds = self.bounded(asked, &known, "area")?;
-        Ok(*known.area.borrow_mut().get_or_insert_with(|| integrals::area(known.world(), &bounds)))
+        let bounds = known.domain(&self.bounded(asked, &known, "area")?);
+        if bounds.is_empty() {
+            return Ok(Measured::default());
+        }
+        let (world, mut kept) = (known.world(), known.area.borrow_mut());
+        let lines = kept.get_or_insert_with(|| Lines::of_area(world, &bounds));
+        Ok(lines.area(world, asked.level))
     }
 
-    fn centroid(&self, asked: &Asked) -> Answer<(DVec3, f64)> {
+    fn centroid(&self, asked: &Asked) -> Answer<[Measured; 3]> {
         let (volume, middle, bar) = self.integrals(asked)?;
         if volume.value == 0.0 {
             let error =
                 Diagnostic::error("E0305", "the shape is nothing, and has no middle").at(asked.at, "");
             return Err(vec![error.help("ask `empty(shape)` first")]);
         }
-        Ok((middle, bar))
+        // What a middle may be off is held against the shape, wherever that stands.
+        let size = self.known(asked)?.extent().diagonal();
+        Ok(middle.to_array().map(|value| Measured { value, err: bar, size, is_open: volume.is_open }))
     }
 
     fn raycast(&self, asked: &Asked, from: DVec3, dir: DVec3) -> Answer<Vec<RayHit>> {
