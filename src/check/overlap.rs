@@ -1,4 +1,5 @@
-//! Solids drawn into each other: lines are inside both.
+//! Solids drawn into each other: lines are inside both. Light tells clear bodies from what they hold, so these may overlap: what
+//! is poured too full, or cast in amber.
 
 use super::{Evidence, Finding};
 use crate::diag::Diagnostic;
@@ -18,7 +19,8 @@ fn find(evidence: &Evidence) -> Vec<Diagnostic> {
             .note(extent(place));
         warning.help("move one of them, or draw them as one: `draw a | b`")
     };
-    evidence.seen.overlaps.iter().map(warn).collect()
+    let is_alike = |(a, b): &(u32, u32)| parts[*a as usize].clear == parts[*b as usize].clear;
+    evidence.seen.overlaps.iter().filter(|(pair, _)| is_alike(pair)).map(warn).collect()
 }
 
 /// How deep and where, to two digits: lines find an overlap's size from below.

@@ -2,15 +2,14 @@
 
 use std::mem;
 
-use super::outline::{Outline, Part};
+use super::outline::Outline;
 use crate::csg::{Expr, Leaf, Object};
 use crate::shot::{Clear, Material, World};
 
 /// Adds what light needs that goes through solids; a world without clear solids stays as it is.
 pub(super) fn with_clear(world: World, outline: &mut Outline, materials: &[Material]) -> World {
     let leaves = world.solids().leaves();
-    let fillings: Vec<Option<u32>> =
-        outline.parts.iter().map(|part| filling(part, leaves, materials)).collect();
+    let fillings: Vec<Option<u32>> = outline.parts.iter().map(|part| part.clear).collect();
     let mut clear: Vec<u32> = fillings.iter().copied().flatten().collect();
     clear.sort_unstable_by(|a, b| {
         precedence(*b, materials).total_cmp(&precedence(*a, materials)).then(b.cmp(a))
@@ -37,9 +36,8 @@ pub(super) fn with_clear(world: World, outline: &mut Outline, materials: &[Mater
     world.with_clear(Clear::new(shares))
 }
 
-/// The clear material of what is drawn; of several the one that wins.
-fn filling(part: &Part, leaves: &[Leaf], materials: &[Material]) -> Option<u32> {
-    let leaves = &leaves[part.leaves.start as usize..part.leaves.end as usize];
+/// The clear material of what is drawn, made of some leaves; of several the one that wins.
+pub(super) fn filling(leaves: &[Leaf], materials: &[Material]) -> Option<u32> {
     let mut worn = Vec::new();
     leaves.iter().for_each(|leaf| leaf.materials(&mut worn));
     let clear = worn.into_iter().filter(|i| Material::of(materials, *i).is_clear());

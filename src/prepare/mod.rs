@@ -23,6 +23,7 @@ mod outline;
 mod samples;
 pub mod survey;
 
+use std::ops::Range;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -35,6 +36,7 @@ use crate::shot::settings::{self, Integrator, Overrides};
 use crate::shot::{Camera, Light, Material, Settings, Shot, World, camera, light, material};
 use crate::solid::point_set::Solidity;
 use crate::solid::{Counts, table};
+use crate::source::Span;
 
 use build::Builder;
 pub use files::{Imports, Inputs};
@@ -215,6 +217,7 @@ fn world(
     options: &Options,
     bare: u32,
 ) -> Result<(World, Outline), Vec<Diagnostic>> {
+    let materials = builder.materials;
     let mut lowering = Lowering::new(builder, options.measure_all);
     lowering.groups = Groups::of(draws.iter().map(|draw| &draw.shape), options.write_out);
     let mut errors = Vec::new();
@@ -246,7 +249,10 @@ fn world(
     let draws = places.iter().map(|(_, leaves, _)| leaves.start).collect();
     let world = World::new(Object::new(leaves, &whole), sheets, bounds, bare).with_draws(draws);
     if let Expr::Or(solids) = &mut whole {
-        let part = |(expr, (at, leaves, bounds))| Part { at, expr, leaves, bounds };
+        let part = |(expr, (at, leaves, bounds)): (Expr, (Span, Range<u32>, Aabb))| {
+            let own = &world.solids().leaves()[leaves.start as usize..leaves.end as usize];
+            Part { at, expr, clear: clear::filling(own, materials), leaves, bounds }
+        };
         outline.parts = solids.drain(..).zip(places).map(part).collect();
     }
     Ok((world, outline))

@@ -36,6 +36,8 @@ pub struct Part {
     pub leaves: Range<u32>,
     /// A box around it; unbounded where it is.
     pub bounds: Aabb,
+    /// The material that light goes through in it, where it does.
+    pub clear: Option<u32>,
 }
 
 /// A difference or a complement.
@@ -71,7 +73,7 @@ impl Outline {
     /// That of an object which is one solid.
     pub(super) fn of_one(mut self, at: Span, expr: &Expr, bounds: Aabb) -> Outline {
         let leaves = 0..self.calls.len() as u32;
-        self.parts = vec![Part { at, expr: expr.clone(), leaves, bounds }];
+        self.parts = vec![Part { at, expr: expr.clone(), leaves, bounds, clear: None }];
         self
     }
 
