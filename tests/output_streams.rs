@@ -21,8 +21,14 @@ use pss::render::{
 use pss::shot::settings::Tone;
 use pss::shot::{Camera, Hit, Settings, Surface};
 
-/// Nothing, and a mine where rays go to the lower right.
-struct Mined(bool);
+/// Nothing, and perhaps a mine in some direction.
+struct Mined(Option<DVec3>);
+
+/// One in the way of the ray through a pixel.
+fn mined() -> Mined {
+    let camera = Camera::fit(Mined(None).bounds());
+    Mined(Some(camera.ray(150.0, 100.0, settings().size).dir.normalize()))
+}
 
 impl Scenery for Mined {
     fn bounds(&self) -> Aabb {
@@ -31,8 +37,9 @@ impl Scenery for Mined {
 
     fn first(&self, ray: &Ray, _: Interval, scratch: &mut Scratch) -> Option<Hit> {
         scratch.solid.counts.leaf_queries += 1;
-        let seen = ray.dir.normalize();
-        assert!(!self.0 || seen.x < 0.05 || 0.0 < seen.z, "the mine went off");
+        // The rays of its own pixel lie within half of this.
+        let far = |mine: DVec3| 0.01 < mine.distance(ray.dir.normalize());
+        assert!(self.0.is_none_or(far), "the mine went off");
         None
     }
 
@@ -102,7 +109,7 @@ fn o10_a_panic_in_a_tile_costs_that_tile_alone() {
     let folder = Folder::new();
     let layout = Layout { window: [0, 0, 200, 150], aovs: settings().aov };
     let mut claim = Claim::new(&folder.path().join("a.png")).unwrap();
-    let (done, keeper) = painted(&Mined(true), claim.begin(&IDENTITY, layout.clone()).unwrap());
+    let (done, keeper) = painted(&mined(), claim.begin(&IDENTITY, layout.clone()).unwrap());
     assert!(
         matches!(&done.failed, Some(RenderError::Panicked { message, .. }) if message == "the mine went off")
     );
@@ -114,12 +121,12 @@ fn o10_a_panic_in_a_tile_costs_that_tile_alone() {
     let mut claim = Claim::new(&folder.path().join("a.png")).unwrap();
     let (state, found) = claim.resume(&IDENTITY, layout).unwrap().unwrap();
     assert_eq!((found.tiles, found.dropped), (done.tiles - done.missing, 0));
-    let (resumed, keeper) = painted(&Mined(false), state);
+    let (resumed, keeper) = painted(&Mined(None), state);
     assert_eq!((resumed.missing, resumed.recalled, resumed.failed), (0, found.tiles, None));
     let settings = settings();
-    let camera = Camera::fit(Mined(false).bounds());
+    let camera = Camera::fit(Mined(None).bounds());
     let view = View { camera: &camera, lights: &[], materials: &[], ghosts: None, settings: &settings };
-    let whole = render_scenery(&Mined(false), &view, &Progress::default()).unwrap();
+    let whole = render_scenery(&Mined(None), &view, &Progress::default()).unwrap();
     assert_eq!(keeper.film, whole.film);
     assert_eq!(resumed.work, Work { rays: whole.rays, counts: whole.counts });
     claim.remove();

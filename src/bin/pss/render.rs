@@ -19,7 +19,7 @@ use crate::load::{self, Loaded};
 use crate::making::Making;
 use crate::progress;
 use crate::stats::{Stages, Stats};
-use crate::stop::Stoppable;
+use crate::stop::{self, Stoppable};
 use crate::{deps, watch};
 
 /// Runs the command.
@@ -31,6 +31,7 @@ pub fn run(args: &RenderArgs, console: &Console) -> Result<(), Failure> {
 pub fn once(args: &RenderArgs, inputs: &Inputs, console: &Console) -> Result<(), Failure> {
     let start = Instant::now();
     let outputs = outputs(args)?;
+    stop::let_writes_fail();
     let inputs = inputs.clone();
     let options = Options {
         samples: args.spp,

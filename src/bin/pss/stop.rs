@@ -66,6 +66,11 @@ fn under_way() -> MutexGuard<'static, Option<UnderWay>> {
     UNDER_WAY.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// From now on writing to a file that may not grow fails, as it does on a full disk, and does not end the program.
+pub fn let_writes_fail() {
+    signals::heed_limits();
+}
+
 /// Lets tiles under way end for a while.
 fn stop(progress: &Arc<Progress>) {
     progress.stop();
@@ -102,12 +107,19 @@ mod signals {
     use signal_hook::iterator::Signals;
 
     static LISTENING: Once = Once::new();
+    static LIMITS: Once = Once::new();
+
+    /// Turns the signal of a file that grows too large into an error of the write.
+    pub fn heed_limits() {
+        LIMITS.call_once(|| {
+            // Where that is not possible, such a file ends the program, and the old one stays all the same.
+            let _ = signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)));
+        });
+    }
 
     /// Handles signals from now on, on a thread of its own.
     pub fn listen() {
         LISTENING.call_once(|| {
-            // Without it a file that grows too large ends the program; with it writing fails, as it should.
-            let _ = signal_hook::flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)));
             // Where signals cannot be handled, they end the program, which harms no file.
             let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else { return };
             std::thread::spawn(move || {
@@ -122,4 +134,5 @@ mod signals {
 #[cfg(not(unix))]
 mod signals {
     pub fn listen() {}
+    pub fn heed_limits() {}
 }
