@@ -26,8 +26,9 @@ const MOST: [u64; 3] = [1 << 21, 1 << 20, 1 << 17];
 const ENOUGH: [f64; 3] = [5e-5, 5e-5, 2e-4];
 /// Areas may have bars by so much wider: every edge that a line sees is one to it, along three axes.
 const WIDER: f64 = 10.0;
-/// Rounds after which an axis is chosen.
+/// Rounds after which an axis is chosen, and leaves up to which that is worth the lines.
 const PILOT: u32 = 2;
+const MANY: usize = 1000;
 /// And by which factor less each time that more is asked for.
 const FINER: f64 = 0.25;
 
@@ -45,14 +46,14 @@ pub struct Lines {
 
 impl Lines {
     /// The volume of what lies in a box, and its middle: along the axis which lines differ least along, of like ones that of
-    /// the shortest side. A wall along the axis is an edge to lines, one across it is none. Where lines cost much the shortest
-    /// side is taken: there the ends of spans are most of what they see.
+    /// the shortest side. A wall along the axis is an edge to lines, one across it is none. Where lines cost much, or are many, the
+    /// shortest side is taken: there the ends of spans are most of what they see.
     pub fn of_volume(world: &World, bounds: &Aabb) -> Lines {
         const AXES: [&[usize]; 3] = [&[0], &[1], &[2]];
         let mut order = [0, 1, 2];
         order.sort_by(|a, b| bounds.size()[*a].total_cmp(&bounds.size()[*b]));
         let of = |axis: usize| Lines::new(world, bounds, AXES[axis]);
-        if cost(world) == Cost::Heavy {
+        if cost(world) == Cost::Heavy || MANY < world.solids().leaves().len() {
             return of(order[0]);
         }
         let mut best: Option<(f64, Lines)> = None;
