@@ -10,13 +10,13 @@ fn film_on(text: &str, threads: usize) -> Film {
     pool.install(|| pss::render::render(&shot(text), &Default::default()).unwrap().film)
 }
 
-/// A hollow ball, a pair of slabs that touch and a floor, from in front.
+/// A hollow ball, a pair of slabs with one front and a floor, from in front.
 const SCENE: &str = "
     camera(eye: [0, -9, 0], look_at: [0, 0, 0], height: 4, kind: \"orthographic\")
     render(size: [41, 41], samples: 4, integrator: \"flat\", filter: \"gauss\", aov: [
         \"owner\", \"leaf\", \"layers\", \"thickness\", \"wall\", \"ties\", \"parity_repairs\", \"projections\", \"cost\", \"variance\", \"samples\"])
     draw sphere(r: 1) - sphere(r: 0.5)
-    draw [box([1.2, -1, -1], [1.8, 0, 1]), box([1.2, 0, -1], [1.8, 2, 1])]
+    draw [box([1.2, -1, -1], [1.8, 0, 1]), box([1.2, -1, -1], [1.8, 2, 1])]
     draw plane(z: -1.5)";
 
 #[test]
@@ -33,7 +33,7 @@ fn layers_count_and_measure_what_lies_along_the_centre_ray() {
     let aside = f64::from(x - 20) * 4.0 / 41.0;
     assert_eq!(at(Aov::Layers, x, 20), 1.0);
     assert!(near(at(Aov::Thickness, x, 20), 2.0 * (1.0 - aside * aside).sqrt()));
-    // The slabs are one solid to a ray; the face is that of the nearer.
+    // The slabs are one solid to a ray; the face is that of the first.
     let x = 20 + (1.5_f64 / (4.0 / 41.0)).round() as u32;
     assert_eq!((at(Aov::Layers, x, 20), at(Aov::Owner, x, 20)), (1.0, 2.0));
     assert!(near(at(Aov::Thickness, x, 20), 3.0));
