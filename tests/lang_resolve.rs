@@ -120,9 +120,9 @@ fn names_of_a_million_letters_are_told_by_where_they_begin() {
 #[test]
 fn all_repairs_of_a_file_are_made_at_once() {
     let folder = Folder::new();
-    folder.write("scene.pss", "let a = 2pi\nlet b = 5 mm\ndraw sphere(radius: 3).rotate_z(45)\n");
+    folder.write("scene.pss", "let a = 30degrees\nlet b = 5 mm\ndraw sphere(radius: 3).rotate_z(45)\n");
     let ran = folder.run(&["check", "--fix", "scene.pss"]);
     assert_eq!(ran.code, 0, "{}", ran.stderr);
     let mended = String::from_utf8(folder.read("scene.pss")).unwrap();
-    assert_eq!(mended, "let a = 2 * pi\nlet b = 5mm\ndraw sphere(r: 3).rotate_z(45deg)\n");
+    assert_eq!(mended, "let a = 30deg\nlet b = 5mm\ndraw sphere(r: 3).rotate_z(45deg)\n");
 }

@@ -119,9 +119,10 @@ const HABITS: &[(&[&str], Place, &str)] = &[
     (
         &["sinh", "cosh", "tanh", "asinh", "acosh", "atanh"],
         Name,
-        "write it by `exp` and `ln`: `(exp(x) + exp(-x)) / 2`",
+        "write it by `exp` and `ln`: cosh is `(exp(x) + exp(-x)) / 2`",
     ),
-    (&["log10", "log2"], Name, "write `ln(x) / ln(10)`"),
+    (&["log10"], Name, "write `ln(x) / ln(10)`"),
+    (&["log2"], Name, "write `ln(x) / ln(2)`"),
     (&["hypot"], Name, "write `length([x, y])`"),
     (&["fmod", "mod", "modulo"], Name, "write `a % b`"),
     (&["trunc", "int"], Name, "write `floor(x)`, `ceil(x)` or `round(x)`"),
