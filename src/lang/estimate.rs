@@ -294,7 +294,7 @@ mod tests {
         assert!((both(|x| x[0] - x[1], &b) - 0.3).abs() < 1e-12);
         // Of a product the corners are 4.1 * 3.2 and so on; the slopes say 4 * 0.2 + 3 * 0.1, the rest is 0.1 * 0.2.
         assert!((both(|x| x[0] * x[1], &b) - 1.12).abs() < 1e-12);
-        let root = Estimate::apply(&[a.clone()], |x| x[0].sqrt());
+        let root = Estimate::apply(std::slice::from_ref(&a), |x| x[0].sqrt());
         assert!((4.1f64.sqrt() - 2.0).abs() <= root.bar() && root.bar() < 0.026);
     }
 

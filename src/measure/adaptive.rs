@@ -257,8 +257,7 @@ fn one(rect: &Rect, seed: u64, integrand: &impl Integrand, scratch: &mut Scratch
                 .map(|place| integrand.at(rect.axis, place.to_array(), scratch, spans));
             std::array::from_fn(|k| 0.5 * (pair[0][k] + pair[1][k]))
         });
-        for k in 0..WIDTH {
-            let [a, b] = [means[0][k], means[1][k]];
+        for (k, (a, b)) in means[0].iter().zip(means[1]).enumerate() {
             let variance = (0.5 * area * (a - b)).powi(2);
             sums.values[k] += 0.5 * area * (a + b);
             sums.variances[k] += variance;
