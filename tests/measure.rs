@@ -97,7 +97,7 @@ fn verdicts_are_refined_until_they_are_decided() {
         "expect centroid(sphere(r: 1, at: [1, 2, 3])) is [1, 2, 3]\nexpect centroid(sphere(r: 1)) ~= [0, 0, 0]",
         "expect bounds(sphere(r: 1) - box([0, -5, -5], [5, 5, 5])).max.x is 0",
         "expect bounds(implicit(x**2 + y**2 + z**2 <= 1, inside: box(size: 3))).size is [2, 2, 2]",
-        "expect volume(sphere(r: 1)) is 4 * pi / 3 or volume(sphere(r: 1)) > 4.18879020478639",
+        "expect volume(sphere(r: 1)) == 4 * pi / 3 or volume(sphere(r: 1)) > 4.18879020478639",
     ] {
         assert!(read(text).is_ok(), "{text}\n{}", told(text));
     }
