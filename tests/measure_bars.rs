@@ -111,10 +111,10 @@ fn blocks(seed: u64) -> Blocks {
         let (lo, taken) = (corner(&mut stream), i % 3 == 2);
         let hi = lo.map(|x| (x + 1 + (stream.unit() * 4.0) as usize).min(N - 1));
         text = format!("({text} {} box({lo:?}, {hi:?}))", if taken { "-" } else { "|" });
-        for at in 0..filled.len() {
+        for (at, filled) in filled.iter_mut().enumerate() {
             let p = [at / N / N, at / N % N, at % N];
             if (0..3).all(|k| lo[k] <= p[k] && p[k] < hi[k]) {
-                filled[at] = !taken;
+                *filled = !taken;
             }
         }
     }
