@@ -15,7 +15,7 @@ draw plane(z: 0)
 camera(eye: [2.5, -5, 3], look_at: [0, 0, 0.7], fov: 34deg)
 light sun(direction: [-1, 2, -3], intensity: 1.5, softness: 3deg)
 light sky(color: #dfe8ff, intensity: 0.5)
-render(size: [160, 120], integrator: \"direct\", tone: \"none\")";
+render(size: [96, 72], integrator: \"direct\", tone: \"none\")";
 
 /// A glass ball and a metal one before the open sky.
 const GLASS: &str = "
@@ -24,7 +24,7 @@ draw sphere(r: 0.8, at: [0.9, 0, 0]).with(metal(#e6b860, roughness: 0.3))
 camera(eye: [0, -7, 1], look_at: [0, 0, 0], fov: 36deg)
 light lamp(at: [-3, -3, 5], size: [2, 2], look_at: [0, 0, 0], intensity: 20)
 light sky(color: #90a8d0, intensity: 0.5)
-render(size: [160, 120], integrator: \"path\", tone: \"none\")";
+render(size: [96, 72], integrator: \"path\", tone: \"none\")";
 
 /// A room lit by a lamp behind a screen: deep shadows beside bright walls.
 const LAMP: &str = "
@@ -33,7 +33,7 @@ draw box([-1, 1, 0], [-0.9, 2.5, 2.4]).with(matte(#a05040))
 draw sphere(r: 0.5, at: [0.8, 1, 0.5]).with(plastic(#4060a0, roughness: 0.1))
 camera(eye: [0, -6, 1.5], look_at: [0, 1, 1.3], fov: 40deg)
 light lamp(at: [-1.5, 2, 2.9], size: [0.5, 0.5], look_at: [-1.5, 2, 0], intensity: 5)
-render(size: [160, 120], integrator: \"path\", tone: \"none\")";
+render(size: [96, 72], integrator: \"path\", tone: \"none\")";
 
 /// A scene, prepared.
 pub fn shot(text: &str) -> Shot {

@@ -81,7 +81,7 @@ impl State {
 
     /// Adds tiles: the place of each in the whole picture, a note, and its first pixel in a film. A failure is remembered,
     /// and nothing more is kept; what was there before stays whole.
-    pub fn add<'a>(&mut self, film: &Film, tiles: impl Iterator<Item = (Place, String, [u32; 2])>) {
+    pub fn add(&mut self, film: &Film, tiles: impl Iterator<Item = (Place, String, [u32; 2])>) {
         if self.broken.is_some() {
             return;
         }
