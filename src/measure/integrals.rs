@@ -7,7 +7,7 @@
 //! axis adds nothing, and none of the lines does.
 //!
 //! The cells begin with the boxes in which leaves matter, so that every leaf is looked at by lines of its own. A leaf of which
-//! nothing is seen by [`LOOKS`] lines through its box is missed: pieces of one shape that are much smaller than all of it, such
+//! nothing is seen by the first lines through its box is missed: pieces of one shape that are much smaller than all of it, such
 //! as an implicit may have.
 
 use glam::DVec3;
