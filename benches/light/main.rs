@@ -34,7 +34,7 @@ pub struct Row {
 }
 
 /// Samples a pixel of the truth.
-const TRUTH: u32 = 4096;
+const TRUTH: u32 = 8192;
 
 /// How often each picture is timed; the median counts.
 const TIMES: usize = 3;
@@ -48,11 +48,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         shot.settings.aov = vec![pss::film::Aov::Samples];
         let truth = truth(&mut shot);
         shot.settings.seed = 0;
-        for samples in [16, 32, 64, 128, 256, 512] {
+        for samples in [16, 32, 64, 128, 256, 512, 1024] {
             (shot.settings.samples, shot.settings.error) = (samples, None);
             rows.push(row(name, false, f64::from(samples), &shot, &truth));
         }
-        for error in [0.06, 0.04, 0.028, 0.02, 0.014, 0.01] {
+        for error in [0.04, 0.02, 0.014, 0.01, 0.007, 0.005] {
             (shot.settings.samples, shot.settings.error) = (4096, Some(error));
             rows.push(row(name, true, error, &shot, &truth));
         }
