@@ -3,7 +3,8 @@
 use super::ast::InfixOp;
 use super::budget::Budget;
 use super::estimate::{self, is_measured, lifted};
-use super::value::{Eval, Located, Parts, Val};
+use super::parts::Parts;
+use super::value::{Eval, Located, Val};
 use crate::diag::Diagnostic;
 use crate::source::Span;
 
@@ -122,7 +123,7 @@ fn numeric(op: InfixOp, a: &Val, b: &Val, at: Span) -> Option<Val> {
     }
     let ((a, a_is_angle), (b, b_is_angle)) = (a.parts()?, b.parts()?);
     let of_angles = is_angle(op, a_is_angle, b_is_angle)?;
-    Some(a.zip(b, |x, y| number(op, x, y))?.value(of_angles, at))
+    Some(a.zip(b)?.map(|(x, y)| number(op, x, y)).value(of_angles, at))
 }
 
 /// Whether an operator makes an angle of two sides that are angles or not; `None` where it makes nothing of them.

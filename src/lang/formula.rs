@@ -6,6 +6,7 @@ use super::args::Callee;
 use super::ast::{Args, Expr, ExprKind, InfixOp, PrefixOp, Step as Follows};
 use super::eval::Machine;
 use super::formula_functions::{FUNCTIONS, Function};
+use super::parts::Parts;
 use super::value::{Eval, Val, bounded};
 use super::{arithmetic, order};
 use crate::diag::{Diagnostic, nearest};
@@ -16,24 +17,28 @@ use crate::source::Span;
 /// The most steps one formula may have.
 const MAX_STEPS: usize = 100_000;
 
-/// What a part of a formula is worth: indices of steps.
+/// What a part of a formula is worth.
 #[derive(Clone, Debug)]
-pub enum Term {
-    /// A number.
-    Number(u32),
-    /// An angle, radians.
-    Angle(u32),
-    /// Two to four numbers.
-    Vector(Vec<u32>),
+pub struct Term {
+    /// Its steps.
+    pub steps: Parts<u32>,
+    /// Whether they are angles, radians.
+    pub of_angles: bool,
 }
 
 impl Term {
+    /// One number.
+    pub fn number(step: u32) -> Term {
+        Term { steps: Parts::One(step), of_angles: false }
+    }
+
     /// What it is, with its article.
     pub fn kind(&self) -> &'static str {
-        match self {
-            Term::Number(_) => "a number",
-            Term::Angle(_) => "an angle",
-            Term::Vector(_) => "a vector",
+        match (&self.steps, self.of_angles) {
+            (Parts::One(_), false) => "a number",
+            (Parts::One(_), true) => "an angle",
+            (Parts::Many(_), false) => "a vector",
+            (Parts::Many(_), true) => "a list of angles",
         }
     }
 }
@@ -72,7 +77,7 @@ pub fn read(machine: &mut Machine, expr: &Expr) -> Eval<Formula> {
     let mut reader = Reader { machine, steps: Builder::default(), symbols: Vec::new() };
     for (axis, name) in (0..).zip(["x", "y", "z"]) {
         let step = reader.add(Step::Coordinate(axis), expr.at)?;
-        reader.symbols.push((name.to_owned(), Term::Number(step)));
+        reader.symbols.push((name.to_owned(), Term::number(step)));
     }
     let (a, b) = (reader.placed(left)?, reader.placed(right)?);
     let (low, high, closed) = match op {
@@ -80,8 +85,8 @@ pub fn read(machine: &mut Machine, expr: &Expr) -> Eval<Formula> {
         InfixOp::Above | InfixOp::AtLeast => (b, a, op == InfixOp::AtLeast),
         _ => return Err(refuse(expr, "has no inside", "a surface, not a solid").into()),
     };
-    let last = match (&low.term, &high.term) {
-        (Term::Number(a), Term::Number(b)) | (Term::Angle(a), Term::Angle(b)) => {
+    let last = match (&low.term.steps, &high.term.steps) {
+        (Parts::One(a), Parts::One(b)) if low.term.of_angles == high.term.of_angles => {
             // What is compared with zero is the formula itself.
             let zero = reader.steps.constant(*b) == Some(0.0);
             if zero { *a } else { reader.two(Two::Subtract, *a, *b, expr.at)? }
@@ -140,8 +145,9 @@ impl Reader<'_, '_> {
             ExprKind::If(parts) => self.choose(parts),
             ExprKind::Block(bindings, body) => self.block(bindings, body),
             ExprKind::Prefix(PrefixOp::Negate, _, operand) => {
-                let term = self.term(operand)?;
-                self.each(term, |r, a| r.one(One::Negate, a, expr.at))
+                let Term { steps, of_angles } = self.term(operand)?;
+                let steps = steps.try_map(|a| self.one(One::Negate, a, expr.at))?;
+                Ok(Term { steps, of_angles })
             }
             ExprKind::Infix(first, rest) if rest[0].0.level() >= 5 => {
                 let mut sum = self.placed(first)?;
@@ -153,11 +159,14 @@ impl Reader<'_, '_> {
                 Ok(sum.term)
             }
             ExprKind::List(items) if (2..=4).contains(&items.len()) => {
-                let number = |item: &Expr| {
-                    let placed = self.placed(item)?;
-                    self.number(&placed, "a vector")
+                let items = items.iter().map(|item| self.placed(item)).collect::<Eval<Vec<_>>>()?;
+                let of_angles = items[0].term.of_angles;
+                let one = |item| match of_angles {
+                    true => self.angle(item, "a list of angles"),
+                    false => self.number(item, "a vector"),
                 };
-                items.iter().map(number).collect::<Eval<Vec<u32>>>().map(Term::Vector)
+                let steps = Parts::Many(items.iter().map(one).collect::<Eval<_>>()?);
+                Ok(Term { steps, of_angles })
             }
             ExprKind::Steps(base, steps) => match (&base.kind, steps.as_slice()) {
                 (ExprKind::Name(word), [Follows::Call(args), rest @ ..]) => {
@@ -176,41 +185,35 @@ impl Reader<'_, '_> {
 
     /// A term, or one number of a vector.
     fn indexed(&mut self, term: Term, steps: &[Follows], at: Span) -> Eval<Term> {
-        match (term, steps) {
-            (term, []) => Ok(term),
-            (Term::Vector(_), [Follows::Index(index, _)]) if self.is_symbolic(index)? => {
-                let error = Diagnostic::error("E0511", "an index of a formula is the same everywhere");
-                Err(error.at(index.at, "depends on x, y or z").help("write a number").into())
-            }
-            (Term::Vector(v), [Follows::Index(index, index_at)]) => {
-                let given = self.machine.located(index)?;
-                let i = given.number("the index")?;
-                let found = v.iter().enumerate().find(|(k, _)| *k as f64 == i);
-                found.map(|(_, number)| Term::Number(*number)).ok_or_else(|| {
-                    let last = v.len() - 1;
-                    let error = Diagnostic::error("E0512", format!("there is no number {i} in this vector"));
-                    error.at(*index_at, "no such index").help(format!("write 0 to {last}")).into()
-                })
-            }
-            _ => Err(stranger(at).into()),
+        let (index, index_at, v) = match (&term.steps, steps) {
+            (_, []) => return Ok(term),
+            (Parts::Many(v), [Follows::Index(index, index_at)]) => (index, *index_at, v),
+            _ => return Err(stranger(at).into()),
+        };
+        if self.is_symbolic(index)? {
+            let error = Diagnostic::error("E0511", "an index of a formula is the same everywhere");
+            return Err(error.at(index.at, "depends on x, y or z").help("write a number").into());
         }
+        let given = self.machine.located(index)?;
+        let i = given.number("the index")?;
+        let Some((_, step)) = v.iter().enumerate().find(|(k, _)| *k as f64 == i) else {
+            let last = v.len() - 1;
+            let error = Diagnostic::error("E0512", format!("there is no number {i} in this vector"));
+            return Err(error.at(index_at, "no such index").help(format!("write 0 to {last}")).into());
+        };
+        Ok(Term { steps: Parts::One(*step), of_angles: term.of_angles })
     }
 
     /// What does not depend on the coordinates.
     fn constant(&mut self, expr: &Expr) -> Eval<Term> {
         let given = self.machine.located(expr)?;
-        match &given.value {
-            Val::Angle(degrees) => {
-                self.add(Step::Number(bounded(*degrees, expr.at)?.to_radians()), expr.at).map(Term::Angle)
-            }
-            value => match value.numbers() {
-                Some(v) => {
-                    let number = |x| self.add(Step::Number(bounded(x, expr.at)?), expr.at);
-                    v.into_iter().map(number).collect::<Eval<Vec<u32>>>().map(Term::Vector)
-                }
-                None => self.add(Step::Number(given.number("the formula")?), expr.at).map(Term::Number),
-            },
-        }
+        let (parts, of_angles) = match given.value.parts() {
+            Some(parts) => parts,
+            None => (Parts::One(given.number("the formula")?), false),
+        };
+        let unit = |x: f64| if of_angles { x.to_radians() } else { x };
+        let steps = parts.try_map(|x| self.add(Step::Number(unit(bounded(x, expr.at)?)), expr.at))?;
+        Ok(Term { steps, of_angles })
     }
 
     fn call(&mut self, word: &str, word_at: Span, args: &Args) -> Eval<Term> {
@@ -254,31 +257,13 @@ impl Reader<'_, '_> {
 
     /// An operator between two terms.
     pub(super) fn infix(&mut self, op: InfixOp, sign: Span, a: &Placed, b: &Placed) -> Eval<Term> {
-        let of_angles = |a, b| arithmetic::is_angle(op, a, b);
-        match (&a.term, &b.term) {
-            (Term::Number(a), Term::Number(b)) => self.numbers(op, *a, *b, sign).map(Term::Number),
-            (Term::Vector(u), Term::Vector(v)) if u.len() == v.len() => {
-                let pair = |(a, b): (&u32, &u32)| self.numbers(op, *a, *b, sign);
-                u.iter().zip(v).map(pair).collect::<Eval<Vec<u32>>>().map(Term::Vector)
-            }
-            (Term::Vector(v), Term::Number(b)) => {
-                let one = |a: &u32| self.numbers(op, *a, *b, sign);
-                v.iter().map(one).collect::<Eval<Vec<u32>>>().map(Term::Vector)
-            }
-            (Term::Number(a), Term::Vector(v)) => {
-                let one = |b: &u32| self.numbers(op, *a, *b, sign);
-                v.iter().map(one).collect::<Eval<Vec<u32>>>().map(Term::Vector)
-            }
-            (Term::Number(x) | Term::Angle(x), Term::Number(y) | Term::Angle(y)) => {
-                let is_angle = |placed: &Placed| matches!(placed.term, Term::Angle(_));
-                match of_angles(is_angle(a), is_angle(b)) {
-                    Some(true) => self.numbers(op, *x, *y, sign).map(Term::Angle),
-                    Some(false) => self.numbers(op, *x, *y, sign).map(Term::Number),
-                    None => Err(self.unlike(op, a, b, sign).into()),
-                }
-            }
-            _ => Err(self.unlike(op, a, b, sign).into()),
-        }
+        let of_angles = arithmetic::is_angle(op, a.term.of_angles, b.term.of_angles);
+        let pairs = a.term.steps.clone().zip(b.term.steps.clone());
+        let (Some(of_angles), Some(pairs)) = (of_angles, pairs) else {
+            return Err(self.unlike(op, a, b, sign).into());
+        };
+        let steps = pairs.try_map(|(a, b)| self.numbers(op, a, b, sign))?;
+        Ok(Term { steps, of_angles })
     }
 
     /// An operator between two numbers; the remainder is a - b floor(a / b), as outside formulas.
@@ -303,7 +288,7 @@ impl Reader<'_, '_> {
         let (left, right) = (a.term.kind(), b.term.kind());
         let error = Diagnostic::error("E0203", format!("`{}` cannot take {left} and {right}", op.sign()));
         let error = error.at(sign, "does not fit its operands").at(a.at, left).at(b.at, right);
-        match left == "an angle" || right == "an angle" {
+        match a.term.of_angles || b.term.of_angles {
             true => error.help("divide an angle by a unit to get a number: `angle / 1rad`"),
             false => error.help("numbers are wanted, or vectors of one size"),
         }
@@ -312,7 +297,7 @@ impl Reader<'_, '_> {
     /// A number, or an error that names the function that wants it.
     pub fn number(&self, given: &Placed, of: &str) -> Eval<u32> {
         match given.term {
-            Term::Number(a) => Ok(a),
+            Term { steps: Parts::One(a), of_angles: false } => Ok(a),
             _ => {
                 let kind = given.term.kind();
                 let error = Diagnostic::error("E0501", format!("`{of}` wants a number, found {kind}"));
@@ -323,28 +308,20 @@ impl Reader<'_, '_> {
 
     /// An angle, radians.
     pub fn angle(&self, given: &Placed, of: &str) -> Eval<u32> {
-        match given.term {
-            Term::Angle(a) => Ok(a),
-            Term::Number(_) => {
+        match &given.term {
+            Term { steps: Parts::One(a), of_angles: true } => Ok(*a),
+            Term { steps: Parts::One(_), .. } => {
                 let angles::Meant { help, edit } = angles::meant(self.machine.written(given.at), true);
                 let error = Diagnostic::error("E0502", format!("`{of}` wants an angle, found a bare number"));
                 let error = error.at(given.at, "which unit?").fix_with(given.at, edit.as_deref());
                 Err(error.help(help).into())
             }
-            Term::Vector(_) => {
-                let error = Diagnostic::error("E0501", format!("`{of}` wants an angle, found a vector"));
-                Err(error.at(given.at, "a vector").help("write an angle, such as `x * 1rad`").into())
+            other => {
+                let kind = other.kind();
+                let error = Diagnostic::error("E0501", format!("`{of}` wants an angle, found {kind}"));
+                Err(error.at(given.at, kind).help("write an angle, such as `x * 1rad`").into())
             }
         }
-    }
-
-    /// A function of one number, of each where it is given a vector.
-    pub fn each(&mut self, term: Term, mut f: impl FnMut(&mut Self, u32) -> Eval<u32>) -> Eval<Term> {
-        Ok(match term {
-            Term::Number(a) => Term::Number(f(self, a)?),
-            Term::Angle(a) => Term::Angle(f(self, a)?),
-            Term::Vector(v) => Term::Vector(v.into_iter().map(|a| f(self, a)).collect::<Eval<_>>()?),
-        })
     }
 
     fn add(&mut self, step: Step, at: Span) -> Eval<u32> {

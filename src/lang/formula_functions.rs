@@ -3,6 +3,7 @@
 use super::args::Formal;
 use super::ast::InfixOp;
 use super::formula::{Placed, Reader, Term};
+use super::parts::Parts;
 use super::value::Eval;
 use crate::diag::Diagnostic;
 use crate::scene::formula::{One, Two};
@@ -38,7 +39,7 @@ const fn line(
 /// The functions.
 pub const FUNCTIONS: &[Function] = &[
     line("sqrt", X, |r, a, at| plain(r, One::Sqrt, "sqrt", a, at)),
-    line("abs", X, |r, a, at| r.each(a[0].term.clone(), |r, x| r.one(One::Abs, x, at))),
+    line("abs", X, |r, a, at| each(r, &a[0].term, a[0].term.of_angles, |r, x| r.one(One::Abs, x, at))),
     line("floor", X, |r, a, at| plain(r, One::Floor, "floor", a, at)),
     line("ceil", X, |r, a, at| plain(r, One::Ceil, "ceil", a, at)),
     line("round", X, |r, a, at| plain(r, One::Round, "round", a, at)),
@@ -50,8 +51,8 @@ pub const FUNCTIONS: &[Function] = &[
     line("asin", X, |r, a, at| to_angle(r, One::Asin, "asin", a, at)),
     line("acos", X, |r, a, at| to_angle(r, One::Acos, "acos", a, at)),
     line("atan2", YX, |r, a, at| {
-        let (y, x) = (r.number(&a[0], "atan2")?, r.number(&a[1], "atan2")?);
-        r.two(Two::Atan2, y, x, at).map(Term::Angle)
+        let Term { steps, .. } = pairwise(r, Two::Atan2, "atan2", &a[0], &a[1], at)?;
+        Ok(Term { steps, of_angles: true })
     }),
     line("min", AB, |r, a, at| pairwise(r, Two::Min, "min", &a[0], &a[1], at)),
     line("max", AB, |r, a, at| pairwise(r, Two::Max, "max", &a[0], &a[1], at)),
@@ -62,54 +63,60 @@ pub const FUNCTIONS: &[Function] = &[
     line("mix", MIX, mix),
     line("length", V, |r, a, at| {
         let square = dot(r, &a[0], &a[0], "length", at)?;
-        r.one(One::Sqrt, square, at).map(Term::Number)
+        r.one(One::Sqrt, square, at).map(Term::number)
     }),
     line("normalize", V, |r, a, at| {
         let square = dot(r, &a[0], &a[0], "normalize", at)?;
         let length = r.one(One::Sqrt, square, at)?;
-        r.each(a[0].term.clone(), |r, x| r.two(Two::Divide, x, length, at))
+        each(r, &a[0].term, false, |r, x| r.two(Two::Divide, x, length, at))
     }),
-    line("dot", AB, |r, a, at| dot(r, &a[0], &a[1], "dot", at).map(Term::Number)),
+    line("dot", AB, |r, a, at| dot(r, &a[0], &a[1], "dot", at).map(Term::number)),
     line("cross", AB, cross),
 ];
 
 fn plain(r: &mut Reader, op: One, name: &str, given: &[Placed], at: Span) -> Eval<Term> {
-    if let Term::Vector(_) = given[0].term {
-        return r.each(given[0].term.clone(), |r, x| r.one(op, x, at));
-    }
-    let x = r.number(&given[0], name)?;
-    r.one(op, x, at).map(Term::Number)
+    plain_numbers(r, &given[0], name)?;
+    each(r, &given[0].term, false, |r, x| r.one(op, x, at))
 }
 
 fn of_angle(r: &mut Reader, op: One, name: &str, given: &[Placed], at: Span) -> Eval<Term> {
-    let x = r.angle(&given[0], name)?;
-    r.one(op, x, at).map(Term::Number)
+    if !given[0].term.of_angles {
+        r.angle(&given[0], name)?;
+    }
+    each(r, &given[0].term, false, |r, x| r.one(op, x, at))
 }
 
 fn to_angle(r: &mut Reader, op: One, name: &str, given: &[Placed], at: Span) -> Eval<Term> {
-    let x = r.number(&given[0], name)?;
-    r.one(op, x, at).map(Term::Angle)
+    plain_numbers(r, &given[0], name)?;
+    each(r, &given[0].term, true, |r, x| r.one(op, x, at))
+}
+
+/// Refuses angles.
+fn plain_numbers(r: &Reader, given: &Placed, name: &str) -> Eval<()> {
+    if given.term.of_angles { r.number(given, name).map(drop) } else { Ok(()) }
+}
+
+/// A function of one number, of each where it is given a vector.
+fn each(
+    r: &mut Reader,
+    term: &Term,
+    of_angles: bool,
+    mut f: impl FnMut(&mut Reader, u32) -> Eval<u32>,
+) -> Eval<Term> {
+    Ok(Term { steps: term.steps.clone().try_map(|x| f(r, x))?, of_angles })
 }
 
 fn pairwise(r: &mut Reader, op: Two, name: &str, a: &Placed, b: &Placed, at: Span) -> Eval<Term> {
-    if let (Term::Angle(a), Term::Angle(b)) = (&a.term, &b.term) {
-        return r.two(op, *a, *b, at).map(Term::Angle);
-    }
-    match (&a.term, &b.term) {
-        (Term::Vector(u), Term::Vector(v)) if u.len() == v.len() => {
-            u.iter().zip(v).map(|(a, b)| r.two(op, *a, *b, at)).collect::<Eval<_>>().map(Term::Vector)
-        }
-        (Term::Vector(u), Term::Number(b)) => {
-            u.iter().map(|a| r.two(op, *a, *b, at)).collect::<Eval<_>>().map(Term::Vector)
-        }
-        (Term::Number(a), Term::Vector(v)) => {
-            v.iter().map(|b| r.two(op, *a, *b, at)).collect::<Eval<_>>().map(Term::Vector)
-        }
-        _ => {
-            let (a, b) = (r.number(a, name)?, r.number(b, name)?);
-            r.two(op, a, b, at).map(Term::Number)
-        }
-    }
+    let of_angles = a.term.of_angles;
+    let pairs = a.term.steps.clone().zip(b.term.steps.clone()).filter(|_| of_angles == b.term.of_angles);
+    let Some(pairs) = pairs.filter(|_| op != Two::Atan2 || !of_angles) else {
+        // Of two that do not fit the first that is no number is told.
+        r.number(a, name)?;
+        r.number(b, name)?;
+        return Err(super::formula::stranger(at).into());
+    };
+    let steps = pairs.try_map(|(a, b)| r.two(op, a, b, at))?;
+    Ok(Term { steps, of_angles })
 }
 
 /// a (1 - t) + b t, of vectors part by part.
@@ -118,15 +125,14 @@ fn mix(r: &mut Reader, given: &[Placed], at: Span) -> Eval<Term> {
     let t = r.number(t, "mix")?;
     let one = r.literal(1.0, at)?;
     let rest = r.two(Two::Subtract, one, t, at)?;
-    if let (Term::Vector(_), _) | (_, Term::Vector(_)) = (&a.term, &b.term) {
-        let number = |step| Placed { term: Term::Number(step), at };
-        let low = Placed { term: r.infix(InfixOp::Multiply, at, a, &number(rest))?, at };
-        let high = Placed { term: r.infix(InfixOp::Multiply, at, b, &number(t))?, at };
-        return r.infix(InfixOp::Add, at, &low, &high);
+    if a.term.of_angles != b.term.of_angles {
+        r.number(a, "mix")?;
+        r.number(b, "mix")?;
     }
-    let (a, b) = (r.number(a, "mix")?, r.number(b, "mix")?);
-    let (low, high) = (r.two(Two::Multiply, a, rest, at)?, r.two(Two::Multiply, b, t, at)?);
-    r.two(Two::Add, low, high, at).map(Term::Number)
+    let number = |step| Placed { term: Term::number(step), at };
+    let low = Placed { term: r.infix(InfixOp::Multiply, at, a, &number(rest))?, at };
+    let high = Placed { term: r.infix(InfixOp::Multiply, at, b, &number(t))?, at };
+    r.infix(InfixOp::Add, at, &low, &high)
 }
 
 fn cross(r: &mut Reader, given: &[Placed], at: Span) -> Eval<Term> {
@@ -135,7 +141,8 @@ fn cross(r: &mut Reader, given: &[Placed], at: Span) -> Eval<Term> {
         let (there, back) = (r.two(Two::Multiply, u[i], v[j], at)?, r.two(Two::Multiply, u[j], v[i], at)?);
         r.two(Two::Subtract, there, back, at)
     };
-    Ok(Term::Vector(vec![minor(1, 2)?, minor(2, 0)?, minor(0, 1)?]))
+    let steps = Parts::Many(vec![minor(1, 2)?, minor(2, 0)?, minor(0, 1)?]);
+    Ok(Term { steps, of_angles: false })
 }
 
 /// Two vectors of one size, of the size that is wanted if one is.
@@ -148,14 +155,14 @@ fn vectors<'p>(
     let wanted = size.map_or("of one size".to_owned(), |n| format!("of {n} numbers"));
     let wrong = |p: &Placed| {
         let found = match &p.term {
-            Term::Vector(v) => format!("one of {}", v.len()),
+            Term { steps: Parts::Many(v), of_angles: false } => format!("one of {}", v.len()),
             other => other.kind().to_owned(),
         };
         let error = Diagnostic::error("E0501", format!("`{name}` wants vectors {wanted}, found {found}"));
         error.at(p.at, p.term.kind()).help("write a vector, such as `[x, y, z]`")
     };
-    let Term::Vector(u) = &a.term else { return Err(wrong(a).into()) };
-    let Term::Vector(v) = &b.term else { return Err(wrong(b).into()) };
+    let Term { steps: Parts::Many(u), of_angles: false } = &a.term else { return Err(wrong(a).into()) };
+    let Term { steps: Parts::Many(v), of_angles: false } = &b.term else { return Err(wrong(b).into()) };
     match u.len() == v.len() && size.is_none_or(|n| n == u.len()) {
         true => Ok((u, v)),
         false => Err(wrong(b).into()),

@@ -93,7 +93,9 @@ fn pairwise(a: &Located, b: &Located, f: impl Fn(f64, f64) -> f64) -> Eval<Val> 
     }
     let both = a.value.parts().zip(b.value.parts());
     let same = both.filter(|((_, a), (_, b))| a == b);
-    if let Some(value) = same.and_then(|((u, of_angles), (v, _))| Some(u.zip(v, f)?.value(of_angles, a.at))) {
+    if let Some(value) =
+        same.and_then(|((u, of_angles), (v, _))| Some(u.zip(v)?.map(|(u, v)| f(u, v)).value(of_angles, a.at)))
+    {
         return Ok(value);
     }
     // Of two that do not fit the first that is no number is told.
@@ -140,9 +142,9 @@ fn atan2(bound: &Bound) -> Eval<Val> {
     let (y, x) = (bound.need("y")?, bound.need("x")?);
     let degrees = |y: f64, x: f64| units::degrees(y.atan2(x), AngleUnit::Radian);
     if let (Some((v, false)), Some((u, false))) = (y.value.parts(), x.value.parts())
-        && let Some(parts) = v.zip(u, degrees)
+        && let Some(parts) = v.zip(u)
     {
-        return Ok(parts.value(true, y.at));
+        return Ok(parts.map(|(y, x)| degrees(y, x)).value(true, y.at));
     }
     Ok(Val::Angle(degrees(y.number("y")?, x.number("x")?)))
 }

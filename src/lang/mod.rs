@@ -33,6 +33,7 @@ mod modules;
 mod nearly;
 mod order;
 mod parse;
+mod parts;
 mod placing;
 mod print;
 mod queries;

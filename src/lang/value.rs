@@ -10,6 +10,7 @@ use super::budget::{Budget, Held, weight};
 use super::builtins::Builtin;
 use super::estimate::Estimate;
 use super::functions::Closure;
+use super::parts::Parts;
 use crate::diag::Diagnostic;
 use crate::scene::{MaterialId, Shape};
 use crate::source::{FileId, Span};
@@ -138,44 +139,6 @@ impl List {
     }
 }
 
-/// One number or angle, or those of a vector.
-#[derive(Clone, Debug)]
-pub enum Parts {
-    One(f64),
-    Many(Vec<f64>),
-}
-
-impl Parts {
-    /// A function of each.
-    pub fn map(self, f: impl Fn(f64) -> f64) -> Parts {
-        match self {
-            Parts::One(x) => Parts::One(f(x)),
-            Parts::Many(v) => Parts::Many(v.into_iter().map(f).collect()),
-        }
-    }
-
-    /// A function of pairs: part by part, one number with each of the other; `None` for vectors of different sizes.
-    pub fn zip(self, other: Parts, f: impl Fn(f64, f64) -> f64) -> Option<Parts> {
-        Some(match (self, other) {
-            (Parts::One(a), b) => b.map(|y| f(a, y)),
-            (a, Parts::One(b)) => a.map(|x| f(x, b)),
-            (Parts::Many(u), Parts::Many(v)) if u.len() == v.len() => {
-                Parts::Many(u.into_iter().zip(v).map(|(x, y)| f(x, y)).collect())
-            }
-            _ => return None,
-        })
-    }
-
-    /// The value that they make.
-    pub fn value(self, of_angles: bool, at: Span) -> Val {
-        match self {
-            Parts::One(x) if of_angles => Val::Angle(x),
-            Parts::One(x) => Val::Number(x),
-            Parts::Many(v) => Val::row(v, of_angles, at),
-        }
-    }
-}
-
 /// A value with the place of its expression.
 #[derive(Clone, Debug)]
 pub struct Located {
@@ -198,7 +161,7 @@ impl Val {
     }
 
     /// What an operator of numbers acts on, and whether these are angles (degrees).
-    pub fn parts(&self) -> Option<(Parts, bool)> {
+    pub fn parts(&self) -> Option<(Parts<f64>, bool)> {
         match self {
             Val::Number(x) => Some((Parts::One(*x), false)),
             Val::Angle(x) => Some((Parts::One(*x), true)),
