@@ -85,6 +85,11 @@ impl Aov {
         ABOUT[self as usize].2
     }
 
+    /// Whether it is known once all rays of a pixel are traced, and not from the one through its centre.
+    pub const fn is_summed(self) -> bool {
+        matches!(self, Aov::Projections | Aov::Cost | Aov::Variance | Aov::Samples)
+    }
+
     /// The value of every channel where nothing is.
     pub const fn nothing(self) -> f32 {
         match self {

@@ -63,7 +63,7 @@ impl<'a> Look<'a> {
         bundle: &Bundle,
         scratch: &'a mut Scratch,
     ) -> Option<Look<'a>> {
-        let Scratch { solid: scratch, room } = scratch;
+        let Scratch { solid: scratch, room, .. } = scratch;
         room.few.clear(core.id);
         let mut look = Look {
             core,

@@ -46,7 +46,7 @@ impl Group {
         ask: impl FnOnce(&mut Sweep<'_>) -> T,
     ) -> T {
         let lean = scratch.lean;
-        lent(scratch, lean, |Scratch { solid, room }| {
+        lent(scratch, lean, |Scratch { solid, room, .. }| {
             ask(&mut Sweep::new(self.core(), ray, range, room, solid))
         })
     }

@@ -27,6 +27,8 @@ use crate::solid::{self, Cost, Crossing};
 pub struct Scratch {
     /// What solids need; the counts of work.
     pub solid: solid::Scratch,
+    /// Room for the crossings of one leaf that is asked by itself.
+    pub found: Vec<Crossing>,
     pub(super) room: Room,
 }
 

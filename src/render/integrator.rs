@@ -23,6 +23,8 @@ pub struct Painter<'a, S> {
     pub(super) ghosts: Option<Ghosts<'a>>,
     /// Where samples lie around their pixel.
     pub(super) spread: Spread,
+    /// Whether samples are judged, or a layer tells of a pixel's samples and their work.
+    pub(super) keeps_book: bool,
     /// Distances between which the picture of distances goes from white to black, world length.
     depths: Interval,
 }
@@ -37,7 +39,8 @@ impl<'a, S: Scenery> Painter<'a, S> {
         let shown = !matches!(view.settings.integrator, Integrator::Normals | Integrator::Depth);
         let ghosts = view.ghosts.filter(|_| shown).map(|world| Ghosts::new(world, view.materials));
         let spread = Spread::new(view.settings.filter);
-        Painter { scenery, view: *view, lights: Lights::new(view.lights), ghosts, spread, depths }
+        let keeps_book = view.settings.error.is_some() || view.settings.aov.iter().any(|aov| aov.is_summed());
+        Painter { scenery, view: *view, lights: Lights::new(view.lights), ghosts, spread, keeps_book, depths }
     }
 
     /// Paints a tile, or the first pixels of one that is given up.

@@ -3,6 +3,7 @@
 //! [`crate::output`], clocks and messages to the program.
 
 mod filter;
+mod frame;
 mod ghosts;
 mod integrator;
 mod layers;

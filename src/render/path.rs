@@ -6,6 +6,7 @@
 
 use glam::{DVec3, Vec3};
 
+use super::frame::Frame;
 use super::integrator::Painter;
 use super::lighting::{Aimed, Came, TOWARD_PAIR, balance, start, turn_pair};
 use super::sampler::Sample;
@@ -13,6 +14,7 @@ use super::scenery::{Scenery, Seen, Tracer};
 use crate::geom::{Interval, Ray};
 use crate::shot::material::finish::{Share, Toward};
 use crate::shot::material::glass::{self, Glass};
+use crate::shot::material::{Finish, even_share};
 use crate::shot::settings::Integrator;
 use crate::shot::{Filling, Material, Meeting};
 
@@ -41,27 +43,10 @@ struct Path {
     came: Came,
     /// Whether the eye sees what it meets, be it through glass or in mirrors.
     from_eye: bool,
+    /// Whether it has met anything but bodies that do not bend it.
+    touched: bool,
     /// Light found.
     light: Vec3,
-}
-
-/// A frame with the normal as its z.
-#[derive(Clone, Copy)]
-struct Frame([DVec3; 3]);
-
-impl Frame {
-    fn new(z: DVec3) -> Frame {
-        let (x, y) = z.any_orthonormal_pair();
-        Frame([x, y, z])
-    }
-
-    fn to(self, dir: DVec3) -> DVec3 {
-        DVec3::from_array(self.0.map(|axis| axis.dot(dir)))
-    }
-
-    fn from(self, dir: DVec3) -> DVec3 {
-        dir.x * self.0[0] + dir.y * self.0[1] + dir.z * self.0[2]
-    }
 }
 
 impl Path {
@@ -94,34 +79,42 @@ impl<S: Scenery> Painter<'_, S> {
             turns: 0,
             came: Came::Eye,
             from_eye: true,
+            touched: false,
             light: Vec3::ZERO,
         };
-        let mut met = self.first_met(tracer, ray, seen);
+        let mut goes_on = self.first_step(tracer, &mut path, seen, sample);
         let mut passed = 0;
-        let empty = met.hit.is_none();
-        while self.step(tracer, &mut path, &met, sample) {
+        while goes_on && passed < MAX_PASSED {
             passed = if 0.0 < path.after { passed + 1 } else { 0 };
-            if MAX_PASSED < passed {
-                break;
-            }
             tracer.rays.bounce += u64::from(path.after == 0.0);
-            met = tracer.meet(&path.ray, path.after);
+            let met = tracer.meet(&path.ray, path.after);
+            goes_on = self.step(tracer, &mut path, &met, sample);
         }
-        // What only straight rays through clear bodies see is as empty as without them.
-        let covered = !empty && (0 < path.turns || met.hit.is_some()) || self.lights.has_open();
+        let covered = path.touched || self.lights.has_open();
         let [r, g, b] = path.light.to_array();
         [r, g, b, f32::from(u8::from(covered))]
     }
 
-    /// What a ray from the eye meets. Where what it sees first of the union of all is opaque, that is all there is to know.
-    fn first_met(&self, tracer: &mut Tracer<S>, ray: &Ray, seen: Option<&Seen>) -> Meeting {
+    /// The first step. Where what the eye sees first of the union of all is opaque, that is all there is to know.
+    fn first_step(
+        &self,
+        tracer: &mut Tracer<S>,
+        path: &mut Path,
+        seen: Option<&Seen>,
+        sample: Sample,
+    ) -> bool {
         let is_plain = |seen: &Seen| {
             seen.hit.entering && !seen.hit.sheet && !self.material(seen.surface.material).is_clear()
         };
-        if !tracer.is_clear() || seen.is_some_and(is_plain) {
-            return Meeting::opaque(seen.map(|seen| seen.hit));
+        if tracer.is_clear() && !seen.is_some_and(is_plain) {
+            let met = tracer.meet(&path.ray, 0.0);
+            return self.step(tracer, path, &met, sample);
         }
-        tracer.meet(ray, 0.0)
+        let Some(seen) = seen else {
+            path.add(self.lights.open(path.ray.dir.normalize_or_zero(), path.came));
+            return false;
+        };
+        self.opaque(tracer, path, seen, sample)
     }
 
     /// Takes in the light of what was met, and chooses where to go on; false where the path ends.
@@ -135,16 +128,34 @@ impl<S: Scenery> Painter<'_, S> {
         path.add(self.lights.found(&path.ray, path.after, until, path.came));
         let Some(hit) = met.hit else { return false };
         let seen = tracer.seen(&path.ray, hit);
-        let choice = sample.pair(turn_pair(path.turns, CHOICE_PAIR));
-        let goes_on = match self.bend(met, &seen) {
-            Some((_, 1.0)) => {
-                path.after = met.end.next_up();
-                return true;
-            }
-            Some((glass, ratio)) => self.through(path, &seen, glass, ratio, sample, choice[0]),
-            None => self.surface(tracer, path, &seen, sample, choice[0]),
+        let Some((glass, ratio)) = self.bend(met, &seen) else {
+            return self.opaque(tracer, path, &seen, sample);
         };
-        goes_on && path.turns <= self.view.settings.bounces && survives(path, choice[1])
+        if ratio == 1.0 {
+            path.after = met.end.next_up();
+            return true;
+        }
+        path.touched = true;
+        self.through(path, &seen, glass, ratio, sample) && self.survives(path, sample)
+    }
+
+    /// Takes in the light of an opaque surface and goes on where anything is left.
+    fn opaque(&self, tracer: &mut Tracer<S>, path: &mut Path, seen: &Seen, sample: Sample) -> bool {
+        path.touched = true;
+        self.surface(tracer, path, seen, sample) && self.survives(path, sample)
+    }
+
+    /// Ends a path that has turned by chance where little is left of its light, and makes up for that where it goes on.
+    fn survives(&self, path: &mut Path, sample: Sample) -> bool {
+        if self.view.settings.bounces < path.turns {
+            return false;
+        }
+        if path.turns <= SURE_TURNS {
+            return path.left != Vec3::ZERO;
+        }
+        let chance = path.left.max_element().min(1.0);
+        path.left /= chance;
+        choices(sample, path.turns - 1)[1] < f64::from(chance)
     }
 
     /// The glass of a face between clear bodies, and the index before it over that beyond; `None` of an opaque face.
@@ -168,22 +179,16 @@ impl<S: Scenery> Painter<'_, S> {
     }
 
     /// Goes on at a face between clear bodies.
-    fn through(
-        &self,
-        path: &mut Path,
-        seen: &Seen,
-        glass: &Glass,
-        ratio: f64,
-        sample: Sample,
-        choice: f64,
-    ) -> bool {
+    fn through(&self, path: &mut Path, seen: &Seen, glass: &Glass, ratio: f64, sample: Sample) -> bool {
         let frame = Frame::new(seen.normal);
         let eye = frame.to(-path.ray.dir.normalize_or_zero());
         let place = sample.pair(turn_pair(path.turns, TOWARD_PAIR));
         if eye.z <= 0.0 {
             return false;
         }
-        let Some(turn) = glass::turn(glass.facets, ratio, eye, place, choice) else { return false };
+        let Some(turn) = glass::turn(glass.facets, ratio, eye, place, choices(sample, path.turns)[0]) else {
+            return false;
+        };
         path.left *= turn.weight as f32;
         let side = if turn.through { -seen.surface.offset } else { seen.surface.offset };
         let came = match path.came {
@@ -200,40 +205,36 @@ impl<S: Scenery> Painter<'_, S> {
     }
 
     /// Takes in the light of an opaque surface and chooses where to go on.
-    fn surface(
-        &self,
-        tracer: &mut Tracer<S>,
-        path: &mut Path,
-        seen: &Seen,
-        sample: Sample,
-        choice: f64,
-    ) -> bool {
-        let material = self.material(seen.surface.material);
+    fn surface(&self, tracer: &mut Tracer<S>, path: &mut Path, seen: &Seen, sample: Sample) -> bool {
+        let finish = self.material(seen.surface.material).finish.as_ref();
         let color = Vec3::from_array(self.albedo(tracer, seen));
-        path.add(material.finish.glow(color));
-        let frame = Frame::new(seen.normal);
-        let eye = frame.to(-path.ray.dir.normalize_or_zero());
-        if eye.z <= 0.0 {
+        path.add(finish.glow(color));
+        if 0.0 <= seen.normal.dot(path.ray.dir) {
             return false;
         }
         let all = self.view.settings.integrator == Integrator::Path;
+        let sends = Sends::new(finish, color, seen, &path.ray);
         let own = |share: &Share| [share.density, if all { share.density } else { share.pointed }];
         let ray = path.ray;
-        for aimed in self.lights.aim(&ray, seen, sample, path.turns, path.from_eye) {
-            let share = material.finish.share(color, eye, frame.to(aimed.dir));
+        self.lights.aim(&ray, seen, sample, path.turns, path.from_eye, |aimed| {
+            let share = sends.share(aimed.dir);
             let counts = aimed.density.map_or(1.0, |d| balance(d, own(&share)[usize::from(!aimed.open)]));
             let light = share.value * aimed.light * counts;
             if light != Vec3::ZERO
-                && let Some(left) = self.reaches(tracer, &aimed)
+                && let Some(left) = self.reaches(tracer, aimed)
             {
                 path.add(light * left);
             }
+        });
+        let is_even = matches!(sends, Sends::Evenly { .. });
+        if is_even && !all && !self.lights.is_open_bright() {
+            return false;
         }
+        let (frame, eye) = sends.frame_and_eye();
         let place = sample.pair(turn_pair(path.turns, TOWARD_PAIR));
-        let Some(toward) = material.finish.toward(color, eye, place, choice) else { return false };
-        self.follow(tracer, path, seen, &frame, &toward, || {
-            own(&material.finish.share(color, eye, toward.dir))
-        })
+        let lobe = if is_even { 0.0 } else { choices(sample, path.turns)[0] };
+        let Some(toward) = finish.toward(color, eye, place, lobe) else { return false };
+        self.follow(tracer, path, seen, &frame, &toward, |dir| own(&sends.share(dir)))
     }
 
     /// Goes on in a direction that a surface chose.
@@ -244,22 +245,19 @@ impl<S: Scenery> Painter<'_, S> {
         seen: &Seen,
         frame: &Frame,
         toward: &Toward,
-        own: impl Fn() -> [f64; 2],
+        own: impl Fn(DVec3) -> [f64; 2],
     ) -> bool {
         path.left *= toward.weight;
         let dir = frame.from(toward.dir);
-        let mut came = if toward.sharp { Came::Sharp } else { Came::Spread(own()) };
+        let came = if toward.sharp { Came::Sharp } else { Came::Spread(own(dir)) };
         if toward.even && self.view.settings.integrator == Integrator::Direct {
-            if let Came::Spread([_, counted]) = &mut came {
-                *counted = 0.0;
-            }
             let ray = Ray::new(start(seen), dir);
             let open =
                 Aimed { dir, ray, range: Interval::AHEAD, light: Vec3::ONE, density: None, open: true };
             if self.lights.is_open_bright()
                 && let Some(left) = self.reaches(tracer, &open)
             {
-                path.add(self.lights.found(&ray, 0.0, None, came) * left);
+                path.add(self.lights.open(dir, came) * left);
             }
             return false;
         }
@@ -270,6 +268,7 @@ impl<S: Scenery> Painter<'_, S> {
     }
 
     /// What is left of light that was aimed at; `None` where something is in the way.
+    #[inline]
     fn reaches(&self, tracer: &mut Tracer<S>, aimed: &Aimed) -> Option<Vec3> {
         if aimed.range.is_empty() {
             return Some(Vec3::ONE);
@@ -307,12 +306,41 @@ impl<S: Scenery> Painter<'_, S> {
     }
 }
 
-/// Ends a path by chance where little is left of its light, and makes up for that where it goes on.
-fn survives(path: &mut Path, choice: f64) -> bool {
-    if path.turns <= SURE_TURNS {
-        return path.left != Vec3::ZERO;
+/// How a surface sends light on to the eye, asked in directions of the world.
+enum Sends<'a> {
+    /// Evenly: neither the eye nor a frame is needed.
+    Evenly { color: Vec3, normal: DVec3 },
+    /// By where the eye is.
+    Toward { finish: &'a dyn Finish, color: Vec3, frame: Frame, eye: DVec3 },
+}
+
+impl<'a> Sends<'a> {
+    fn new(finish: &'a dyn Finish, color: Vec3, seen: &Seen, ray: &Ray) -> Sends<'a> {
+        if finish.is_even() {
+            return Sends::Evenly { color, normal: seen.normal };
+        }
+        let frame = Frame::new(seen.normal);
+        Sends::Toward { finish, color, frame, eye: frame.to(-ray.dir.normalize_or_zero()) }
     }
-    let chance = path.left.max_element().min(1.0);
-    path.left /= chance;
-    choice < f64::from(chance)
+
+    /// The frame of the surface, and where the eye is in it, which is not asked for what is sent evenly.
+    fn frame_and_eye(&self) -> (Frame, DVec3) {
+        match self {
+            Sends::Evenly { normal, .. } => (Frame::new(*normal), DVec3::Z),
+            Sends::Toward { frame, eye, .. } => (*frame, *eye),
+        }
+    }
+
+    fn share(&self, dir: DVec3) -> Share {
+        match self {
+            Sends::Evenly { color, normal } => even_share(*color, normal.dot(dir)),
+            Sends::Toward { finish, color, frame, eye } => finish.share(*color, *eye, frame.to(dir)),
+        }
+    }
+}
+
+/// Numbers to choose by at a turn: among ways, and whether the path goes on. They take as long as a short ray, so they are made
+/// where something is chosen.
+fn choices(sample: Sample, turn: u32) -> [f64; 2] {
+    sample.pair(turn_pair(turn, CHOICE_PAIR))
 }

@@ -8,7 +8,7 @@
 use super::Progress;
 use super::integrator::Painter;
 use super::layers::{self, Sums};
-use super::sampler::PixelSampler;
+use super::sampler::{PixelSampler, Sample};
 use super::scenery::{Scenery, Seen, Tracer};
 use super::tiles::Tile;
 use crate::film::Film;
@@ -33,8 +33,6 @@ struct Pixel {
     quarters: [(f64, u32); 4],
     /// The work of its rays.
     work: Counts,
-    /// What the ray through the centre sees, where layers asked.
-    centre: Option<Option<Seen>>,
 }
 
 impl Pixel {
@@ -88,26 +86,56 @@ impl<S: Scenery> Painter<'_, S> {
         film: &mut Film,
     ) {
         let most = self.view.settings.samples;
-        let first = if self.view.settings.error.is_some() { most.min(FIRST) } else { most };
+        if self.view.settings.error.is_none() {
+            for at in part.each() {
+                let mut pixel = Pixel::default();
+                self.begin(tracer, at, (&mut pixel, most), Some(tile), progress, film);
+                self.end(&pixel, tile.index(at), film);
+            }
+            return;
+        }
         let mut pixels = vec![Pixel::default(); cell.pixels() as usize];
         for (at, pixel) in cell.each().zip(&mut pixels) {
-            if part.has(at) && !film.layers.is_empty() {
-                pixel.centre = Some(self.centre(tracer, at, tile, film));
-            }
-            self.sample(tracer, at, (pixel, first), progress, |i| {
-                (4 * u64::from(i) / u64::from(first)) as usize
-            });
+            let shown = part.has(at).then_some(tile);
+            self.begin(tracer, at, (pixel, most.min(FIRST)), shown, progress, film);
         }
         while let Some(open) = self.open(cell, &pixels) {
             for ((at, pixel), _) in cell.each().zip(&mut pixels).zip(open).filter(|(_, open)| *open) {
                 let (from, to) = (pixel.taken, most.min(2 * pixel.taken));
                 pixel.fold();
-                self.sample(tracer, at, (pixel, to), progress, |i| if i - from < from / 2 { 2 } else { 3 });
+                let quarter = |i| if i - from < from / 2 { 2 } else { 3 };
+                self.sample(tracer, at, (pixel, to), None, progress, quarter);
             }
         }
         for (at, pixel) in cell.each().zip(&pixels).filter(|(at, _)| part.has(*at)) {
-            let index = tile.index(at);
-            film.rgba[index] = pixel.sum.map(|s| s / pixel.taken as f32);
+            self.end(pixel, tile.index(at), film);
+        }
+    }
+
+    /// Takes the first samples of a pixel; where it belongs to a tile its layers are kept there.
+    fn begin(
+        &self,
+        tracer: &mut Tracer<S>,
+        at: [u32; 2],
+        (pixel, first): (&mut Pixel, u32),
+        tile: Option<&Tile>,
+        progress: &Progress,
+        film: &mut Film,
+    ) {
+        let quarter = |i| (4 * u64::from(i) / u64::from(first)) as usize;
+        match tile.filter(|_| !film.layers.is_empty()) {
+            Some(tile) => {
+                let centre = self.centre(tracer, at, tile, film);
+                self.sample(tracer, at, (pixel, first), Some(&centre), progress, quarter);
+            }
+            None => self.sample(tracer, at, (pixel, first), None, progress, quarter),
+        }
+    }
+
+    /// Writes a pixel that is done.
+    fn end(&self, pixel: &Pixel, index: usize, film: &mut Film) {
+        film.rgba[index] = pixel.sum.map(|s| s / pixel.taken as f32);
+        if self.keeps_book {
             let sums = Sums { work: pixel.work, variance: pixel.variance(), samples: pixel.taken };
             layers::sum_up(film, index, &sums);
         }
@@ -145,18 +173,30 @@ impl<S: Scenery> Painter<'_, S> {
         seen
     }
 
-    /// Takes samples of a pixel of the whole picture up to a number; `quarter` says where each counts.
+    /// The value of a sample, ghosts before it.
+    fn shown(&self, tracer: &mut Tracer<S>, ray: &Ray, seen: Option<&Seen>, sample: Sample) -> [f32; 4] {
+        let value = self.value(tracer, ray, seen, sample);
+        match &self.ghosts {
+            Some(ghosts) => ghosts.over(&mut tracer.scratch, ray, seen, value),
+            None => value,
+        }
+    }
+
+    /// Takes samples of a pixel of the whole picture up to a number; `centre` is what the ray through its centre is known to
+    /// see, `quarter` says where each sample counts.
     fn sample(
         &self,
         tracer: &mut Tracer<S>,
         [x, y]: [u32; 2],
         (pixel, to): (&mut Pixel, u32),
+        centre: Option<&Option<Seen>>,
         progress: &Progress,
         quarter: impl Fn(u32) -> usize,
     ) {
         let settings = self.view.settings;
         let single = settings.samples == 1;
-        let before = tracer.scratch.solid.counts;
+        let known = centre.filter(|_| single);
+        let before = self.keeps_book.then_some(tracer.scratch.solid.counts);
         let sampler = PixelSampler::new(settings.seed, x, y);
         for i in pixel.taken..to {
             if progress.gives_up() {
@@ -168,18 +208,24 @@ impl<S: Scenery> Painter<'_, S> {
             let on_lens = || if single { [0.0; 2] } else { sample.pair(LENS_PAIR) };
             let [x, y] = [f64::from(x) + dx, f64::from(y) + dy];
             let ray: Ray = self.view.camera.ray_through(x, y, settings.size, on_lens);
-            let seen = pixel.centre.filter(|_| single).unwrap_or_else(|| tracer.see(&ray));
-            let mut value = self.value(tracer, &ray, seen.as_ref(), sample);
-            if let Some(ghosts) = &self.ghosts {
-                value = ghosts.over(&mut tracer.scratch, &ray, seen.as_ref(), value);
-            }
+            let value = match known {
+                Some(centre) => self.shown(tracer, &ray, centre.as_ref(), sample),
+                None => {
+                    let seen = tracer.see(&ray);
+                    self.shown(tracer, &ray, seen.as_ref(), sample)
+                }
+            };
             let value = value.map(|v| v * weight);
             pixel.sum.iter_mut().zip(value).for_each(|(s, v)| *s += v);
-            let (sum, count) = &mut pixel.quarters[quarter(i)];
-            *sum += luminance(value);
-            *count += 1;
+            if self.keeps_book {
+                let (sum, count) = &mut pixel.quarters[quarter(i)];
+                *sum += luminance(value);
+                *count += 1;
+            }
         }
         pixel.taken = to;
-        pixel.work.add(&tracer.scratch.solid.counts.since(&before));
+        if let Some(before) = before {
+            pixel.work.add(&tracer.scratch.solid.counts.since(&before));
+        }
     }
 }

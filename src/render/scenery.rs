@@ -166,6 +166,7 @@ impl<'a, S: Scenery> Tracer<'a, S> {
     }
 
     /// What the eye sees along a ray of the bundle.
+    #[inline(always)]
     pub fn see(&mut self, ray: &Ray) -> Option<Seen> {
         self.rays.camera += 1;
         let hit = self.scenery.first_of(&self.bundle, ray, &mut self.scratch)?;
@@ -173,6 +174,7 @@ impl<'a, S: Scenery> Tracer<'a, S> {
     }
 
     /// A face as it is seen along a ray.
+    #[inline(always)]
     pub fn seen(&self, ray: &Ray, hit: Hit) -> Seen {
         let surface = self.scenery.surface(ray, &hit);
         let away = if hit.sheet { 0.0 < surface.normal.dot(ray.dir) } else { !hit.entering };

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::clear::{Clear, Meeting};
 use crate::csg::{self, Boundary, Bundle, Leaf, Object, Part, Spans};
 use crate::geom::{Aabb, Interval, Ray, tolerance};
+use crate::solid::Crossing;
 
 /// Everything drawn.
 #[derive(Debug, Default)]
@@ -29,6 +30,23 @@ pub struct Hit {
     pub entering: bool,
     /// Whether the leaf is a sheet.
     pub sheet: bool,
+}
+
+/// A crossing of a sheet; its normal is not asked for yet.
+struct OnSheet<'a> {
+    leaf: &'a Leaf,
+    index: usize,
+    local: &'a Ray,
+    crossing: &'a Crossing,
+}
+
+impl OnSheet<'_> {
+    fn hit(&self, scratch: &mut csg::Scratch) -> Hit {
+        let normal = self.leaf.normal(self.local, self.crossing, &mut scratch.solid);
+        let (t, leaf, crossing) = (self.crossing.t, self.index as u32, *self.crossing);
+        let boundary = Boundary { t, leaf, crossing, normal, flipped: false, filler: None };
+        Hit { boundary, entering: crossing.entering, sheet: true }
+    }
 }
 
 /// The surface at a crossing, world frame.
@@ -129,17 +147,29 @@ impl World {
         }
         let solid = self.solids.first_of(bundle, ray, range, scratch);
         let solid = solid.map(|(boundary, entering)| Hit { boundary, entering, sheet: false });
-        let end = solid.map_or(range.hi, |hit| hit.boundary.t.min(range.hi));
-        self.first_sheet(ray, Interval::new(range.lo, end), scratch).or(solid)
+        self.sheet_before(solid, ray, range, scratch)
     }
 
     /// The first crossing of a sheet in the range.
     pub(super) fn first_sheet(&self, ray: &Ray, range: Interval, scratch: &mut csg::Scratch) -> Option<Hit> {
-        let mut best: Option<Hit> = None;
+        self.sheet_before(None, ray, range, scratch)
+    }
+
+    /// The first crossing of a sheet in the range up to a hit, else that.
+    #[inline(always)]
+    fn sheet_before(
+        &self,
+        mut best: Option<Hit>,
+        ray: &Ray,
+        range: Interval,
+        scratch: &mut csg::Scratch,
+    ) -> Option<Hit> {
         for index in 0..self.sheets.len() {
-            let end = best.map_or(range.hi, |hit| hit.boundary.t);
-            let nearest = self.sheet(index, ray, Interval::new(range.lo, end), scratch, |_| false);
-            best = nearest.or(best);
+            let end = best.as_ref().map_or(range.hi, |hit| hit.boundary.t.min(range.hi));
+            self.sheet(index, ray, Interval::new(range.lo, end), scratch, |found, scratch| {
+                best = Some(found.hit(scratch));
+                false
+            });
         }
         best
     }
@@ -149,7 +179,14 @@ impl World {
     pub fn blocked(&self, ray: &Ray, range: Interval, scratch: &mut csg::Scratch) -> bool {
         counted(ray, scratch)
             && (self.solids.any(ray, range, scratch)
-                || (0..self.sheets.len()).any(|i| self.sheet(i, ray, range, scratch, |_| false).is_some()))
+                || (0..self.sheets.len()).any(|index| {
+                    let mut any = false;
+                    self.sheet(index, ray, range, scratch, |_, _| {
+                        any = true;
+                        false
+                    });
+                    any
+                }))
     }
 
     /// All spans of the union of the solids, clipped to `range`.
@@ -165,40 +202,36 @@ impl World {
             return;
         }
         for index in 0..self.sheets.len() {
-            self.sheet(index, ray, range, scratch, |hit| {
-                out.push(hit);
+            self.sheet(index, ray, range, scratch, |found, scratch| {
+                out.push(found.hit(scratch));
                 true
             });
         }
         out.sort_by(|a, b| a.boundary.t.total_cmp(&b.boundary.t));
     }
 
-    /// Shows a sheet's crossings in the range to `go_on`, ascending, until it returns false; returns the last.
+    /// Shows a sheet's crossings in the range to `go_on`, ascending, until it returns false.
+    #[inline]
     fn sheet(
         &self,
         index: usize,
         ray: &Ray,
         range: Interval,
         scratch: &mut csg::Scratch,
-        mut go_on: impl FnMut(Hit) -> bool,
-    ) -> Option<Hit> {
+        mut go_on: impl FnMut(OnSheet, &mut csg::Scratch) -> bool,
+    ) {
         let leaf = &self.sheets[index];
         let range = leaf.met(ray).intersect(range);
         let local = leaf.place.ray_to_local(ray);
-        let (mut lo, mut last) = (range.lo, None);
-        while lo <= range.hi {
-            let mut found = Vec::new();
+        let mut found = std::mem::take(&mut scratch.found);
+        let mut lo = range.lo;
+        'rest: while lo <= range.hi {
+            found.clear();
             let rest = Interval::new(lo, range.hi);
             let answer = leaf.crossings(&local, rest, &mut scratch.solid, &mut found);
-            for crossing in found.into_iter().filter(|c| lo < c.t && c.t <= range.hi) {
-                let normal = leaf.normal(&local, &crossing, &mut scratch.solid);
-                let t = crossing.t;
-                let boundary =
-                    Boundary { t, leaf: index as u32, crossing, normal, flipped: false, filler: None };
-                let hit = Hit { boundary, entering: crossing.entering, sheet: true };
-                last = Some(hit);
-                if !go_on(hit) {
-                    return last;
+            for crossing in found.iter().filter(|c| lo < c.t && c.t <= range.hi) {
+                if !go_on(OnSheet { leaf, index, local: &local, crossing }, scratch) {
+                    break 'rest;
                 }
             }
             if answer.range.hi <= lo {
@@ -206,7 +239,7 @@ impl World {
             }
             lo = answer.range.hi;
         }
-        last
+        scratch.found = found;
     }
 
     #[inline]

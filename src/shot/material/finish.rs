@@ -43,6 +43,12 @@ pub trait Finish: Debug + Send + Sync {
     /// Chooses where light comes from by three numbers in [0, 1); `None` where no light comes.
     fn toward(&self, color: Vec3, eye: DVec3, place: [f64; 2], lobe: f64) -> Option<Toward>;
 
+    /// Whether all light that it sends on goes evenly to all sides: its shares are those of [`super::even_share`] then, and no
+    /// other numbers than those of the place are asked for.
+    fn is_even(&self) -> bool {
+        false
+    }
+
     /// What it sends by itself, radiance.
     fn glow(&self, color: Vec3) -> Vec3 {
         let _ = color;

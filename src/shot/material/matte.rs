@@ -20,10 +20,19 @@ pub fn lifted([u, v]: [f64; 2]) -> DVec3 {
     DVec3::new(u.sqrt() * cos, u.sqrt() * sin, (1.0 - u).sqrt())
 }
 
+/// The share of light that is sent on evenly, by the cosine of where it comes from.
+pub fn even_share(color: Vec3, cosine: f64) -> Share {
+    let density = cosine.max(0.0) * FRAC_1_PI;
+    Share { value: color * density as f32, density, pointed: 0.0 }
+}
+
 impl Finish for Matte {
+    fn is_even(&self) -> bool {
+        true
+    }
+
     fn share(&self, color: Vec3, _: DVec3, light: DVec3) -> Share {
-        let density = light.z.max(0.0) * FRAC_1_PI;
-        Share { value: color * density as f32, density, pointed: 0.0 }
+        even_share(color, light.z)
     }
 
     fn toward(&self, color: Vec3, _: DVec3, place: [f64; 2], _: f64) -> Option<Toward> {

@@ -15,7 +15,7 @@ use glam::DVec3;
 
 use crate::scene::{BuildError, Call, Decl};
 pub use finish::Finish;
-pub use matte::Matte;
+pub use matte::{Matte, even_share, lifted};
 pub use metal::Metal;
 pub use paint::Paint;
 pub use plastic::Plastic;
