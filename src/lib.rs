@@ -40,6 +40,7 @@ pub mod mls;
 pub mod num;
 pub mod output;
 pub mod prepare;
+pub mod raster;
 pub mod render;
 pub mod report;
 pub mod scene;

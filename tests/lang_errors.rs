@@ -92,21 +92,21 @@ error[E0504]: the result of `/` is not finite
   |
 2 | let c = 1 / 0
   |           ^ infinite or undefined
-  = help: look for a division by zero or a root of a negative number
+  = help: the right side is zero, or the left is too large
 
 error[E0504]: the result of `sqrt` is not finite
  --> scene.pss:3:9
   |
 3 | let d = sqrt(-1)
   |         ^^^^^^^^ infinite or undefined
-  = help: look for a division by zero or a root of a negative number
+  = help: roots are of numbers from zero on: `sqrt(max(x, 0))`, `sqrt(abs(x))`
 
 error[E0504]: the result of `normalize` is not finite
  --> scene.pss:4:9
   |
 4 | let e = normalize([0, 0, 0])
   |         ^^^^^^^^^^^^^^^^^^^^ infinite or undefined
-  = help: look for a division by zero or a root of a negative number
+  = help: a vector of length zero has no direction
 "#
 }
 

@@ -308,7 +308,7 @@ error[E0504]: the result of `/` is not finite
   |
 1 | draw implicit(x * (1 / 0) <= 1, inside: box(size: 1))
   |                      ^ infinite or undefined
-  = help: look for a division by zero or a root of a negative number
+  = help: the right side is zero, or the left is too large
 
 error[E0501]: `the formula` wants a number, found a string
  --> scene.pss:2:20

@@ -20,7 +20,7 @@ fn texts() -> Vec<String> {
     let scenes =
         scenes.map(|entry| entry.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e == "pss"));
     let mut all: Vec<String> = scenes.map(|path| std::fs::read_to_string(path).unwrap()).collect();
-    all.extend(codes::all().flat_map(|code| [code.bad, code.good]).map(str::to_owned));
+    all.extend(codes::all().filter(|c| !c.bad.is_empty()).flat_map(|c| [c.bad, c.good]).map(str::to_owned));
     let words = reference::words(&pss::prepare::catalog());
     all.extend(
         words.iter().filter(|word| !word.example.is_empty()).map(|word| format!("draw {}", word.example)),

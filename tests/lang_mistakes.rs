@@ -150,6 +150,40 @@ const MISTAKES: &[(&str, &str)] = &[
     ("print sphere(r: 1).bounds", "`bounds(shape)`"),
     ("let a = max(1, 2, 3)", "max(a, max(b, c))"),
     ("draw sphere(r: 1).scale(2, 2, 2)", "[x, y, z]"),
+    ("let light = 3", "take another name"),
+    ("param camera = 3", "take another name"),
+    ("fn render(x) = x", "take another name"),
+    ("fn f(in) = 1", "take another name"),
+    ("draw implicit(x^2 + y^2 + z^2 <= 1, inside: box(size: 3))", "x**2 + y**2"),
+    (
+        "draw implicit(fn(x, y, z) => x**2 + y**2 + z**2 <= 1, inside: box(size: 3))",
+        "leave `fn(...) =>` away",
+    ),
+    ("draw for i = 0..3 { sphere(r: i) }", "for i in 0..3"),
+    ("draw for i, j in 0..3 { sphere(r: 1) }", "for i in 0..3, j in 0..3"),
+    ("param a = 5 in 1:10", "1..10"),
+    ("material clay(kind: matte, color: #fff)", "\"matte\""),
+    ("render(integrator: path)", "\"path\""),
+    ("draw sphere(r: 1).mirror(z)", "\"z\""),
+    ("draw torus(r1: 3, r2: 1)", "`major:`"),
+    ("fn f(x): number = x * 2", "fn f(x: number) = value"),
+    ("fn f x = x * 2", "fn f(x) = value"),
+    ("fn f(x) => x * 2", "fn f(x) = value"),
+    ("let a = {x: 1, y: 2}", "`v.x`"),
+    ("draw if true { sphere(r: 1) } else if false { box(size: 1) }", "else { c }"),
+    ("let a = if true { 1 } elif false { 2 } else { 3 }", "else if c { d }"),
+    ("let a = 5 mod 3", "a % b"),
+    ("let a = 1 <> 2", "a != b"),
+    ("let x = 1 if true else 2", "if a { b } else { c }"),
+    ("print sin 30", "sin(30deg)"),
+    ("let my-name = 3", "`my_name`"),
+    ("let a: number = 3", "let name = value"),
+    ("let a := 3", "let name = value"),
+    ("draw sphere(r: 1) sphere(r: 2)", "draw a | b"),
+    ("print let(a = 3) a", "{ let a = 3"),
+    ("print asin(2)", "from -1 to 1"),
+    ("print ln(0)", "above zero"),
+    ("draw box(size: 1) || sphere(r: 1)", "solids take `|`"),
 ];
 
 /// Edits that would change what was meant: there is none.
@@ -269,6 +303,17 @@ fn edits_are_put_into_the_text() {
         ("draw sphere(r: 1).with(red)", "draw sphere(r: 1).with(matte(#ff0000))"),
         ("let a = 3;let b = 4;", "let a = 3 let b = 4"),
         ("echo(3)", "print(3)"),
+        ("draw for i = 0..3 { sphere(r: i) }", "draw for i in 0..3 { sphere(r: i) }"),
+        (
+            "let a = if 1 <> 2 { 5 mod 3 } elif 1 == 2 { 1 } else { 2 }",
+            "let a = if 1 != 2 { 5 % 3 } else if 1 == 2 { 1 } else { 2 }",
+        ),
+        ("draw box(size: 1) || sphere(r: 1)", "draw box(size: 1) || sphere(r: 1)"),
+        ("union() { sphere(r: 1) }", "union() { sphere(r: 1) }"),
+        (
+            "draw implicit(x^2 + y^2 <= 1, inside: box(size: 3))",
+            "draw implicit(x**2 + y**2 <= 1, inside: box(size: 3))",
+        ),
     ];
     for (scene, want) in cases {
         let mut text = scene.to_owned();

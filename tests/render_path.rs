@@ -46,6 +46,19 @@ fn nothing_white_is_seen_in_a_white_furnace() {
 }
 
 #[test]
+fn a_clamp_bounds_light_that_has_turned_and_no_other() {
+    let at = |kind: &str, clamp: &str| {
+        film(&furnace(kind, "path").replace("samples: 64", &format!("samples: 16{clamp}")))
+    };
+    let mirror = "metal(rgb(1, 1, 1), roughness: 0)";
+    // All that a mirror shows has turned once.
+    assert_mean(&at(mirror, ", clamp: 0.25"), 0.25, SINGLE, "a mirror");
+    // A glowing body is seen straight.
+    assert_mean(&at("emissive(rgb(1, 1, 1))", ", clamp: 0.25"), 1.0, SINGLE, "a glow");
+    assert_eq!(at(mirror, ", clamp: 1.5").rgba, at(mirror, "").rgba);
+}
+
+#[test]
 fn rough_glass_takes_light_and_gives_none() {
     // One reflection or refraction off facets: what they send to each other is lost, and that is said in the docs.
     let [(little, _), (much, _)] =

@@ -1,4 +1,4 @@
-//! Time against error of adaptive and of even sampling, on three scenes, with a plot.
+//! Time against error of adaptive and of even sampling, on five scenes, with a plot.
 //!
 //!     cargo bench --bench light [-- OUT]
 //!
@@ -34,7 +34,7 @@ pub struct Row {
 }
 
 /// Samples a pixel of the truth.
-const TRUTH: u32 = 8192;
+const TRUTH: u32 = 4096;
 
 /// How often each picture is timed; the median counts.
 const TIMES: usize = 3;

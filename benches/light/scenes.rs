@@ -1,11 +1,29 @@
-//! The scenes: noise in few places, as pictures mostly have it.
+//! The scenes: three with noise in few places, as pictures of things mostly have it, and two with noise nearly everywhere.
 
 use pss::prepare::{self, Options};
 use pss::shot::Shot;
 use pss::source::SourceMap;
 
 /// Names and texts.
-pub const SCENES: [(&str, &str); 3] = [("cut", CUT), ("glass", GLASS), ("lamp", LAMP)];
+pub const SCENES: [(&str, &str); 5] =
+    [("sun", SUN), ("lens", LENS), ("glass", GLASS), ("cut", CUT), ("lamp", LAMP)];
+
+/// A cut body on a floor in a soft sun: noise in half-shadows and on edges alone.
+const SUN: &str = "
+draw (sphere(r: 1, at: [0, 0, 1]) - box([0, -2, 0.6], [2, 0, 3])).with(matte(#c08040))
+draw torus(major: 0.5, minor: 0.15, at: [1.6, 0.4, 0.15]).with(matte(#60a060))
+draw plane(z: 0)
+camera(eye: [2.5, -5, 3], look_at: [0, 0, 0.7], fov: 34deg)
+light sun(direction: [-1, 2, -3], intensity: 1.5, softness: 4deg)
+render(size: [96, 72], integrator: \"direct\", tone: \"none\")";
+
+/// Pegs in a row, one in focus: noise where the lens blurs.
+const LENS: &str = "
+draw union(for i in 0..7 { cylinder(r: 0.2, h: 1).move([0.55 * i - 1.6, 1.2 * i - 2, 0]) }).with(matte(#b05040))
+draw plane(z: 0)
+camera(eye: [0, -6, 1.6], look_at: [0, 0, 0.4], fov: 40deg, aperture: 0.12, focus: 6)
+light sun(direction: [-1, 2, -3], intensity: 1.5)
+render(size: [96, 72], integrator: \"direct\", tone: \"none\")";
 
 /// A cut body on a floor under a sky and a soft sun: noise in half-shadows alone.
 const CUT: &str = "

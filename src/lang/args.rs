@@ -93,7 +93,7 @@ impl<'a> Callee<'a> {
                     let known = nearest(&name.text, names);
                     let told = format!("`{}` has no argument `{}`", self.word, name.text);
                     let error = Diagnostic::error("E0403", told).at(name.at, "unknown argument");
-                    let habit = habits::instead(&name.text, habits::Place::Argument);
+                    let habit = habits::instead_of_argument(self.word, &name.text);
                     // Another spelling of an argument that is there says more than a habit.
                     if let Some(help) = habit.filter(|help| known.is_none() || *help != habits::WEAR) {
                         let same = habits::same(&name.text, habits::Place::Argument);

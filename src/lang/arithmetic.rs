@@ -164,10 +164,18 @@ pub fn finite(value: &Val, made_by: &str, at: Span) -> Eval<()> {
     if fine {
         return Ok(());
     }
-    Err(Diagnostic::error("E0504", format!("the result of `{made_by}` is not finite"))
-        .at(at, "infinite or undefined")
-        .help("look for a division by zero or a root of a negative number")
-        .into())
+    let help = match made_by {
+        "asin" | "acos" => "a sine and a cosine lie from -1 to 1: `clamp(x, -1, 1)` mends roundings",
+        "ln" => "logarithms are of numbers above zero",
+        "sqrt" => "roots are of numbers from zero on: `sqrt(max(x, 0))`, `sqrt(abs(x))`",
+        "/" | "%" => "the right side is zero, or the left is too large",
+        "**" => "a root of a negative number, a power of zero below zero, or a number too large",
+        "normalize" => "a vector of length zero has no direction",
+        "exp" | "*" | "+" | "-" => "the result is beyond the largest number",
+        _ => "look for a division by zero or a root of a negative number",
+    };
+    let error = Diagnostic::error("E0504", format!("the result of `{made_by}` is not finite"));
+    Err(error.at(at, "infinite or undefined").help(help).into())
 }
 
 fn refuse(op: InfixOp, a: &Located, b: &Located, sign: Span) -> Diagnostic {

@@ -6,7 +6,7 @@ use glam::DVec3;
 use litemap::LiteMap;
 
 use super::args::{Callee, formals, quoted, wanted};
-use super::ast::{Args, Expr};
+use super::ast::{Args, Expr, ExprKind};
 use super::eval::Machine;
 use super::value::{Eval, Located, Stop, Val};
 use super::{formula, half_space};
@@ -53,6 +53,9 @@ fn argument(machine: &mut Machine, param: &Param, expr: &Expr) -> Eval<Value> {
     }
     if param.kind == Kind::Condition {
         return Ok(Value::Formula(formula::read(machine, expr)?.into()));
+    }
+    if let Kind::Choice(words) | Kind::LengthOr(words) = param.kind {
+        unquoted(machine, expr, param.name, words)?;
     }
     let given = machine.located(expr)?;
     let name = param.name;
@@ -153,6 +156,21 @@ fn whole(given: &Located, name: &str, lo: i64, hi: i64) -> Eval<f64> {
     Err(Diagnostic::error("E0503", format!("`{name}` must be a whole number from {lo} to {hi}"))
         .at(given.at, format!("{x}"))
         .help(format!("write a whole number from {lo} to {hi}"))
+        .into())
+}
+
+/// Refuses a word that stands without its quotes, unless the scene gives it a meaning.
+pub fn unquoted(machine: &Machine, expr: &Expr, name: &str, words: &[&str]) -> Eval<()> {
+    let ExprKind::Name(word) = &expr.kind else { return Ok(()) };
+    if !words.contains(&word.as_str()) || machine.defined(word, expr.at).is_some() {
+        return Ok(());
+    }
+    let error = Diagnostic::error("E0507", format!("the word of `{name}` stands in quotes"));
+    let quoted = format!("\"{word}\"");
+    Err(error
+        .at(expr.at, "without them it is a name")
+        .fix(expr.at, &quoted)
+        .help(format!("write `{quoted}`"))
         .into())
 }
 

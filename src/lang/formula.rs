@@ -72,6 +72,10 @@ pub fn read(machine: &mut Machine, expr: &Expr) -> Eval<Formula> {
             let error = refuse(expr, "is a condition of several", "one comparison is wanted");
             return Err(error.help("both of two: `max(f, g) <= 0`; any of two: `min(f, g) <= 0`").into());
         }
+        ExprKind::Function(_) => {
+            let error = refuse(expr, "is a function, not a condition", "expected a comparison");
+            return Err(error.help("leave `fn(...) =>` away: `x`, `y` and `z` are known here").into());
+        }
         _ => return Err(refuse(expr, "is not a condition", "expected a comparison").into()),
     };
     let mut reader = Reader { machine, steps: Builder::default(), symbols: Vec::new() };
@@ -157,6 +161,13 @@ impl Reader<'_, '_> {
                     sum = Placed { term: self.infix(*op, *sign, &sum, &next)?, at };
                 }
                 Ok(sum.term)
+            }
+            ExprKind::Infix(first, rest) if rest[0].0 == InfixOp::Exclude => {
+                let base = self.machine.written(first.at).split_whitespace().last().unwrap_or_default();
+                let told = format!("`{base}^` is the difference of solids, not a power");
+                let error = Diagnostic::error("E0511", told);
+                let error = error.at(rest[0].1, "in a formula").fix(rest[0].1, "**");
+                Err(error.help("a power is written `a ** b`: `x**2 + y**2 + z**2 <= 1`").into())
             }
             ExprKind::List(items) if (2..=4).contains(&items.len()) => {
                 let items = items.iter().map(|item| self.placed(item)).collect::<Eval<Vec<_>>>()?;

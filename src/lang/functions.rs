@@ -16,7 +16,7 @@ const DEEPEST: usize = 1000;
 /// Stack that is left when more is taken, and how much then: a body may nest as deep as the grammar allows.
 pub const RED_ZONE: usize = 16 << 20;
 pub const MORE_STACK: usize = 64 << 20;
-/// Calls named in an error.
+/// The innermost calls named in an error; the outermost is named too.
 const TOLD: usize = 6;
 
 /// A function as a value.
@@ -106,13 +106,15 @@ impl Machine<'_> {
     pub fn with_call(&self, stop: Stop, closure: &Closure, at: Span) -> Stop {
         let Stop::Told(mut error) = stop else { return stop };
         let calls = error.notes.iter().filter(|note| note.starts_with(CALLED)).count();
+        let outermost = || format!("{CALLED}`{}`, called at {}", closure.word(), self.sources.place(at));
         match calls {
-            ..TOLD => {
-                let place = self.sources.place(at);
-                error.notes.push(format!("{CALLED}`{}`, called at {place}", closure.word()));
+            ..TOLD => error.notes.push(outermost()),
+            TOLD => error.notes.extend([format!("{CALLED}more calls"), outermost()]),
+            _ => {
+                // The last is replaced: in the end it is where the chain begins.
+                error.notes.pop();
+                error.notes.push(outermost());
             }
-            TOLD => error.notes.push(format!("{CALLED}more calls")),
-            _ => {}
         }
         Stop::Told(error)
     }

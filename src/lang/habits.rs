@@ -137,6 +137,11 @@ const HABITS: &[(&[&str], Place, &str)] = &[
     ),
     (&["projection", "offset", "render"], Name, "shapes are solids; a flat outline is a list of points"),
     (&["children"], Name, "a function takes shapes as arguments: `fn pair(s) = s | s.move([9, 0, 0])`"),
+    (
+        &["x", "y", "z"],
+        Name,
+        "coordinates are known in `implicit` and `half_space`; an axis is written in quotes, `\"z\"`; a value of your own is defined: `let name = value`",
+    ),
     (&["each"], Name, "lists are joined by `concat(a, b)`"),
     (&["translate", "translated", "position", "at"], Method, "write `.move([x, y, z])`"),
     (&["rotateX", "rotx"], Method, "write `.rotate_x(45deg)`"),
@@ -178,7 +183,6 @@ const HABITS: &[(&[&str], Place, &str)] = &[
     (&["width", "resolution"], Argument, "write `size: [width, height]`"),
     (&["spp", "antialias", "quality"], Argument, "write `samples: 16`"),
     (&["power", "brightness", "energy"], Argument, "write `intensity: 2`"),
-    (&["r1"], Argument, "a cylinder of two radii is `cone(r1: 2, r2: 1, h: 3)`"),
 ];
 
 /// Words that mean the same as one of ours, in the same place: what may mean something else, as `green` of CSS does, is none.
@@ -233,6 +237,23 @@ const SAME: &[(&str, Place, &str)] = &[
     ("fovy", Argument, "fov"),
     ("spp", Argument, "samples"),
 ];
+
+/// Arguments of one call that are another's.
+const ARGUMENTS: &[(&str, &[&str], &str)] = &[
+    ("cylinder", &["r1", "r2"], "a cylinder of two radii is `cone(r1: 2, r2: 1, h: 3)`"),
+    (
+        "torus",
+        &["r", "R", "r1", "r2", "r_major", "r_minor"],
+        "the ring's radius is `major:`, that of its tube `minor:`",
+    ),
+    ("cone", &["r"], "a cone has two radii: `cone(r1: 2, r2: 0, h: 3)`"),
+];
+
+/// What to write instead of an argument of a call.
+pub fn instead_of_argument(callee: &str, word: &str) -> Option<&'static str> {
+    let own = ARGUMENTS.iter().find(|(of, words, _)| *of == callee && words.contains(&word));
+    own.map(|(.., help)| *help).or_else(|| instead(word, Argument))
+}
 
 /// The word of ours that means the same.
 pub fn same(word: &str, place: Place) -> Option<&'static str> {

@@ -373,8 +373,9 @@ impl Reader<'_> {
         let decl = match kinds.next() {
             None => catalog.words(Group::Material).next().and_then(|w| catalog.find(Group::Material, w)),
             Some(kind) => {
-                let given = self.machine.located(&kind.value)?;
                 let words: Vec<&str> = catalog.words(Group::Material).collect();
+                check::unquoted(&self.machine, &kind.value, "kind", &words)?;
+                let given = self.machine.located(&kind.value)?;
                 let word = check::choice(&given, "kind", &words)?;
                 catalog.find(Group::Material, &word)
             }

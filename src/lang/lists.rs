@@ -16,6 +16,17 @@ const SEEDS: &[Formal] = &[
     Formal::place("j").optional(),
     Formal::place("k").optional(),
     Formal::place("l").optional(),
+    Formal::place("m").optional(),
+    Formal::place("n").optional(),
+    Formal::place("o").optional(),
+    Formal::place("p").optional(),
+    Formal::place("q").optional(),
+    Formal::place("r").optional(),
+    Formal::place("s").optional(),
+    Formal::place("t").optional(),
+    Formal::place("u").optional(),
+    Formal::place("v").optional(),
+    Formal::place("w").optional(),
 ];
 
 /// The functions.

@@ -6,7 +6,7 @@ use super::args::{self, Formal};
 use super::builtins::{self, Builtin};
 use super::keywords::KEYWORDS;
 use super::signs::SIGNS;
-use crate::scene::{Catalog, Group};
+use crate::scene::{Catalog, Group, Kind};
 
 /// A word of the language.
 #[derive(Clone, Debug)]
@@ -23,6 +23,8 @@ pub struct Word {
     pub args: Vec<[String; 3]>,
     /// The names of all its arguments.
     pub names: Vec<String>,
+    /// Arguments that are words in quotes: their names, and the words.
+    pub choices: Vec<(&'static str, Vec<&'static str>)>,
     /// A call that works; empty where there is none.
     pub example: &'static str,
 }
@@ -92,6 +94,7 @@ pub fn words(catalog: &Catalog) -> Vec<Word> {
             doc: decl.doc,
             args: decl.params.iter().map(arg).collect(),
             names: names(&formals),
+            choices: decl.params.iter().filter_map(|p| Some((p.name, choices(p.kind)?.to_vec()))).collect(),
             example: decl.example,
         }
     });
@@ -119,7 +122,15 @@ fn names(formals: &[Formal]) -> Vec<String> {
 /// A word without arguments.
 fn bare(name: &str, chapter: Chapter, call: &str, doc: &'static str) -> Word {
     let (name, call) = (name.to_owned(), call.to_owned());
-    Word { name, chapter, call, doc, args: Vec::new(), names: Vec::new(), example: "" }
+    Word { name, chapter, call, doc, args: Vec::new(), names: Vec::new(), choices: Vec::new(), example: "" }
+}
+
+/// The words of which an argument is one, or a list.
+fn choices(kind: Kind) -> Option<&'static [&'static str]> {
+    match kind {
+        Kind::Choice(words) | Kind::Choices(words) | Kind::LengthOr(words) => Some(words),
+        _ => None,
+    }
 }
 
 fn builtin(b: &Builtin, chapter: Chapter, before: &str) -> Word {
@@ -138,6 +149,7 @@ fn builtin(b: &Builtin, chapter: Chapter, before: &str) -> Word {
         doc: b.doc,
         args: b.formals.iter().filter(|f| !f.required || !f.doc.is_empty()).map(arg).collect(),
         names: names(b.formals),
+        choices: Vec::new(),
         example: "",
     }
 }

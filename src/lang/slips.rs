@@ -10,7 +10,7 @@ use crate::diag::Diagnostic;
 use crate::source::Span;
 
 /// Message, label and help.
-fn told(message: impl Into<String>, label: &str, help: impl Into<String>) -> Option<[String; 3]> {
+pub(super) fn told(message: impl Into<String>, label: &str, help: impl Into<String>) -> Option<[String; 3]> {
     Some([message.into(), label.to_owned(), help.into()])
 }
 
@@ -25,19 +25,28 @@ const TWO: &str = "a block has one value: two make a list, `[a, b]`, or a union,
 impl Slip<'_> {
     /// The error, if the slip has a name.
     pub fn named(&self, word: &str, after_value: bool) -> Option<Diagnostic> {
-        let all =
-            [Slip::number, Slip::chosen, Slip::looped, Slip::comma, Slip::sign, Slip::brought, Slip::listed];
+        let all = [
+            Slip::number,
+            Slip::foreign,
+            Slip::chosen,
+            Slip::looped,
+            Slip::comma,
+            Slip::sign,
+            Slip::brought,
+            Slip::listed,
+        ];
         let found = all.iter();
         let [message, label, help] = found.filter_map(|of| of(self, word, after_value)).next()?;
         let at = self.refused.place(self.found);
         let error = Diagnostic::error("E0101", message).at(at, label).help(help);
-        Some(match self.mending(word, at, after_value) {
+        let edit = self.foreign_edit(word, at, after_value).or_else(|| self.mending(word, at, after_value));
+        Some(match edit {
             Some((span, text)) => error.fix(span, text),
             None => error,
         })
     }
 
-    fn before(&self) -> &str {
+    pub(super) fn before(&self) -> &str {
         self.before.map_or("", |t| self.text(t))
     }
 
@@ -45,7 +54,7 @@ impl Slip<'_> {
         self.before.is_some_and(|t| t.kind == TokenKind::Number)
     }
 
-    fn opened_by(&self, bracket: &str) -> bool {
+    pub(super) fn opened_by(&self, bracket: &str) -> bool {
         self.bracket.is_some_and(|(open, _)| self.text(open) == bracket)
     }
 
@@ -67,8 +76,8 @@ impl Slip<'_> {
             "=" if self.before() == ".." => None,
             "=" if after_value && self.labels() => Some((at, ":".to_owned())),
             "=" if after_value && self.is_asked() => Some((at, "==".to_owned())),
-            "&" if self.before() == "&" => Some((before?.to(at), "and".to_owned())),
-            "|" if self.before() == "|" => Some((before?.to(at), "or".to_owned())),
+            "&" if self.before() == "&" && self.compares() => Some((before?.to(at), "and".to_owned())),
+            "|" if self.before() == "|" && self.compares() => Some((before?.to(at), "or".to_owned())),
             // After a `%` it may be the sign of a sum.
             "+" if !after_value && self.before() != "%" && next.is_some_and(|t| t.begins_operand()) => {
                 Some((at, String::new()))
@@ -96,6 +105,13 @@ impl Slip<'_> {
             && self.opened_by("(")
             && called
             && !self.opened_by_condition()
+    }
+
+    /// Whether what stands before is a condition: solids take other operators.
+    fn compares(&self) -> bool {
+        const SIGNS: [&str; 9] = ["==", "!=", "<", "<=", ">", ">=", "true", "false", "not"];
+        let start = self.bracket.map_or(0, |(_, j)| j + 1);
+        self.is_asked() || self.all[start..self.i].iter().any(|t| SIGNS.contains(&self.text(t)))
     }
 
     /// Whether a condition is wanted: in an expectation, or before the `{` of a choice.
@@ -344,6 +360,18 @@ impl Slip<'_> {
             }
             _ if after_value && self.bracket.is_none() && next == ":" => {
                 told("arguments stand in parentheses", "does not fit here", "write `sphere(r: 1)`")
+            }
+            _ if self.before() == ")"
+                && is_word
+                && next == "("
+                && self.bracket.is_none()
+                && self.callee().and_then(called).is_none() =>
+            {
+                told(
+                    format!("`{word}` does not fit after the value"),
+                    "expected an operator or the end of the item",
+                    "every shape is drawn by itself, `draw a` and `draw b`, or as one: `draw a | b`",
+                )
             }
             _ if self.before() == ")" && is_word => match (self.callee().and_then(called), self.bracket) {
                 (Some(help), _) => told(

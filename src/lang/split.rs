@@ -103,6 +103,9 @@ impl Cutter<'_> {
             self.close_item(i);
             self.item = Some(Open { start: i, sound: true, stray: false, stranger: None });
         }
+        if !begins && self.begins_stray(i) {
+            self.close_item(i);
+        }
         let is_at =
             |i: usize| self.tokens[i].kind == TokenKind::Sign && self.tokens[i].text(self.text) == "@";
         self.in_attributes =
@@ -146,12 +149,39 @@ impl Cutter<'_> {
             TokenKind::Word => ITEM_WORDS.contains(&word),
             _ => false,
         };
+        if before.is_some() && !token.leads_line && self.is_name(i) {
+            return false;
+        }
         let Some(innermost) = self.open.last() else {
             // What stands on the line of a `for` of another language is its body.
-            return starts && (token.leads_line || self.item.as_ref().is_none_or(|item| !item.stray));
+            let stray = self.item.as_ref().is_some_and(|item| item.stray);
+            return starts && (token.leads_line || !stray);
         };
         let in_block = self.tokens[*innermost].text(self.text) == "{";
         starts && token.leads_line && after.is_none_or(|(_, t)| t != ":") && !(word == "let" && in_block)
+    }
+
+    /// Whether a word of an item is meant as a name, `let light = 3`, or as what other languages have in expressions,
+    /// `print let(a = 3) a`.
+    fn is_name(&self, i: usize) -> bool {
+        let text = |j: usize| self.tokens.get(j).map_or("", |t| t.text(self.text));
+        let named = self.item.as_ref().is_some_and(|item| item.start + 1 == i)
+            && matches!(text(i - 1), "let" | "fn" | "param" | "material");
+        named || text(i) == "let" && text(i + 1) == "("
+    }
+
+    /// Whether a statement of another language begins at a token, after one that is no item either.
+    fn begins_stray(&self, i: usize) -> bool {
+        let token = &self.tokens[i];
+        let text = |j: usize| self.tokens.get(j).map_or("", |t| t.text(self.text));
+        let ends = i > 0 && matches!(text(i - 1), ";" | "}");
+        let gives = text(i + 1) == "=" && i > 0 && self.tokens[i - 1].ends_operand(self.text);
+        self.item.as_ref().is_some_and(|item| item.stray)
+            && self.open.is_empty()
+            && token.leads_line
+            && matches!(token.kind, TokenKind::Word | TokenKind::Sign)
+            && !matches!(text(i), "else" | "}" | ";")
+            && (ends || gives)
     }
 
     /// Ends the item before a token.
@@ -268,11 +298,15 @@ pub fn not_an_item(text: &str, tokens: &[Token], i: usize, at: Span) -> Diagnost
         } else {
             word
         };
-    if let Some(help) = habits::instead_of_item(habit) {
+    // `x = 3` names a value, whatever the name is elsewhere.
+    let names = next == "=" && habits::instead(habit, habits::Place::Item).is_none();
+    if let Some(help) = habits::instead_of_item(habit).filter(|_| !names) {
         // `print` and `expect` take one value.
         let takes_one = matches!(word, "echo" | "assert");
         let fits = !(takes_one && holds_several(text, tokens, i + 1));
-        let same = habits::same(word, habits::Place::Item).filter(|_| fits);
+        // `union() { a b }` has its operands elsewhere.
+        let empty = next == "(" && tokens.get(i + 2).is_some_and(|t| t.text(text) == ")");
+        let same = habits::same(word, habits::Place::Item).filter(|_| fits && !empty && next != "{");
         return error.at(at, "not an item").fix_with(at, same).help(help);
     }
     if word == "fn" {

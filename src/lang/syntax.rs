@@ -1,9 +1,10 @@
 //! What to say where an item stops being one: the token that does not fit, what would, and the slip that is
 //! the likely cause. The grammar's own words are never shown.
 
+use super::headers::header;
 use super::keywords::{self, usage};
 use super::scan::{Token, TokenKind, tokens};
-use super::split::{ITEM_WORDS, not_an_item};
+use super::split::not_an_item;
 use super::{habits, slips, span};
 use crate::diag::{Diagnostic, shown};
 use crate::source::{FileId, Span};
@@ -37,6 +38,27 @@ impl Refused<'_> {
         span(self.file, self.base + token.start()..self.base + token.end())
     }
 
+    /// Whether the block that ends the item is that of an `if`, and no `else` has come.
+    fn lacks_else(&self, all: &[Token]) -> bool {
+        let mut depth = 0usize;
+        let opening = (0..all.len()).rev().find(|j| {
+            match all[*j].kind {
+                TokenKind::Close => depth += 1,
+                TokenKind::Open => depth -= 1,
+                _ => {}
+            }
+            depth == 0
+        });
+        let before = &all[..opening.unwrap_or(0)];
+        let last = before
+            .iter()
+            .rev()
+            .map(|t| t.text(self.text))
+            .find(|w| matches!(*w, "if" | "else" | "for" | "fn"));
+        let is_else = before.last().is_some_and(|t| t.text(self.text) == "else");
+        last == Some("if") && !is_else
+    }
+
     fn ended(&self, all: &[Token]) -> Diagnostic {
         let Some(last) = all.last() else {
             return Diagnostic::error("E0101", "the text is empty")
@@ -56,8 +78,7 @@ impl Refused<'_> {
             let [message, label, help] = slips::ends_with_point(number.text(self.text));
             return Diagnostic::error("E0101", message).at(self.place(point), label).help(help);
         }
-        let has = |word: &str| all.iter().any(|t| t.text(self.text) == word);
-        if word == "}" && has("if") && !has("else") {
+        if word == "}" && self.lacks_else(all) {
             return Diagnostic::error("E0101", "an `if` without an `else` has no value")
                 .at(at, "expected `else`")
                 .help("write `if a { b } else { c }`; a list of nothing is `[]`");
@@ -85,62 +106,6 @@ fn innermost(before: &[Token]) -> Option<(&Token, usize)> {
         }
     }
     open.pop()
-}
-
-/// Mistakes before the value of an item: its name, its `=`, its `(`.
-fn header(item: &str, all: &[Token], i: usize, refused: &Refused, at: Span) -> Option<Diagnostic> {
-    let found = all.get(i).map(|t| t.text(refused.text));
-    let shown = found.map_or(String::new(), |f| format!(", found `{}`", shown(f)));
-    if i == 1 && matches!(item, "let" | "fn" | "param" | "material") {
-        let error = Diagnostic::error("E0101", format!("expected a name after `{item}`{shown}"));
-        let help = match found {
-            Some(word) if keywords::is_keyword(word) => format!("`{word}` is a keyword: take another name"),
-            _ => format!("write {}", usage(item)),
-        };
-        return Some(error.at(at, "not a name").help(help));
-    }
-    if i == 2 && matches!(item, "let" | "param") {
-        return Some(
-            Diagnostic::error("E0101", format!("expected `=` after the name{shown}"))
-                .at(at, "expected `=`")
-                .help(format!("write {}", usage(item))),
-        );
-    }
-    if i == 1 && item == "import" && all.get(i).is_some_and(|t| t.kind != TokenKind::Text) {
-        return Some(
-            Diagnostic::error("E0101", "the name of a file stands in quotes")
-                .at(at, "expected `\"`")
-                .help(format!("write {}", usage(item))),
-        );
-    }
-    let signed = || all[..i].iter().any(|t| t.text(refused.text) == "=");
-    if item == "fn" && found == Some("{") && !signed() {
-        return Some(
-            Diagnostic::error("E0101", "a function has `=` before its value")
-                .at(at, "expected `=`")
-                .fix(Span { end: at.start, ..at }, "= ")
-                .help("write `fn f(x) = { ... }`"),
-        );
-    }
-    if item == "units" && i == 2 {
-        return Some(
-            Diagnostic::error("E0101", format!("expected a unit of length{shown}"))
-                .at(at, "not a unit")
-                .help(format!("write {}", usage(item))),
-        );
-    }
-    let wants_arguments = matches!(
-        (item, i),
-        ("render" | "units" | "camera" | "light", 1) | ("material" | "camera" | "light", 2)
-    );
-    if wants_arguments {
-        return Some(
-            Diagnostic::error("E0101", format!("expected `(` after `{item}`{shown}"))
-                .at(at, "expected `(`")
-                .help(format!("write {}", usage(item))),
-        );
-    }
-    None
 }
 
 /// The place of a mistake and what stands around it.
@@ -220,11 +185,14 @@ impl Slip<'_> {
         if after == "." {
             return error.help("after `.` stands the name of a method");
         }
-        if keywords::is_keyword(word) && !ITEM_WORDS.contains(&word) {
-            return error.help(format!(
-                "`{shown}` is a keyword; to use it inside a value, put parentheses around it"
-            ));
+        match word {
+            "if" | "for" | "fn" | "not" => {
+                error.help(format!("`{shown}` begins a value of its own: put parentheses around all of it"))
+            }
+            _ if keywords::is_keyword(word) => {
+                error.help(format!("`{shown}` is a keyword: take another name"))
+            }
+            _ => error.help("a value is a number, a colour, a string, a list, a name or a call"),
         }
-        error.help("a value is a number, a colour, a string, a list, a name or a call")
     }
 }

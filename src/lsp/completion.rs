@@ -13,6 +13,9 @@ use crate::lang::{ATTRIBUTES, ITEM_WORDS, LENGTHS, TYPES};
 /// What may be written at a byte.
 pub fn complete(view: &View, at: usize) -> Vec<CompletionItem> {
     let outline = &view.outline;
+    if let Some(text) = outline.text_at(at) {
+        return choices(view, text);
+    }
     if outline.is_literal_at(at) {
         return Vec::new();
     }
@@ -36,6 +39,33 @@ pub fn complete(view: &View, at: usize) -> Vec<CompletionItem> {
             }
         }
     }
+}
+
+/// The words that may stand in the quotes of a token: alone after an argument's name, or in a list.
+fn choices(view: &View, text: usize) -> Vec<CompletionItem> {
+    let outline = &view.outline;
+    let Some(mut open) = outline.open_before(text) else { return Vec::new() };
+    let mut colon = text.checked_sub(1);
+    if outline.word(open) == "[" {
+        colon = open.checked_sub(1);
+        let Some(around) = outline.open_before(open) else { return Vec::new() };
+        open = around;
+    }
+    let label = colon.filter(|i| outline.word(*i) == ":").and_then(|i| i.checked_sub(1));
+    let (Some(label), Some(callee)) = (label.map(|i| outline.word(i)), outline.callee(open)) else {
+        return Vec::new();
+    };
+    let words = |word: &Word| match (callee, label) {
+        (Callee::Item("material"), "kind") => vec![word.name.clone()],
+        _ => {
+            let of_label = word.choices.iter().filter(|(name, _)| *name == label);
+            of_label.flat_map(|(_, words)| words.iter().map(|w| (*w).to_owned())).collect()
+        }
+    };
+    let mut all: Vec<String> = callees(view, callee).into_iter().flat_map(words).collect();
+    let mut seen = std::collections::HashSet::new();
+    all.retain(|word| seen.insert(word.clone()));
+    all.iter().map(|word| plain(word, CompletionItemKind::ENUM_MEMBER)).collect()
 }
 
 fn after_point(view: &View, i: usize) -> Vec<CompletionItem> {

@@ -95,6 +95,18 @@ impl Outline {
         false
     }
 
+    /// The string that a byte stands in, closed or not.
+    pub fn text_at(&self, at: usize) -> Option<usize> {
+        let i = self.tokens.partition_point(|t| t.end() < at);
+        let token = self.tokens.get(i).filter(|t| t.start() < at)?;
+        let within = match token.kind {
+            TokenKind::OpenText => true,
+            TokenKind::Text => at < token.end(),
+            _ => false,
+        };
+        within.then_some(i)
+    }
+
     /// Whether a byte stands in something that is written letter by letter: a string, a number, a colour, a comment.
     pub fn is_literal_at(&self, at: usize) -> bool {
         use TokenKind::{Color, Number, OpenComment, OpenText, Text};

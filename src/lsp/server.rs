@@ -135,17 +135,26 @@ impl Server {
         }
         self.findings.extend(found.map(|found| (name, found)));
         for uri in touched {
-            let mut diagnostics: Vec<Diagnostic> = Vec::new();
-            let all = self.findings.values().flat_map(|findings| &findings.told);
-            for diagnostic in all.filter(|(of, _)| *of == uri).flat_map(|(_, list)| list) {
-                if !diagnostics.contains(diagnostic) {
-                    diagnostics.push(diagnostic.clone());
-                }
-            }
+            let diagnostics = self.all_about(&uri);
             let version = self.documents.get(uri.as_str()).map(|document| document.version);
             let params = PublishDiagnosticsParams { uri, diagnostics, version };
             self.send(Notification::new(PublishDiagnostics::METHOD.to_owned(), params));
         }
+    }
+
+    /// What is wrong with a file: as it is read by itself where it is open, and what else comes to light where it is imported.
+    fn all_about(&self, uri: &Uri) -> Vec<Diagnostic> {
+        let own = self.findings.get(uri.as_str()).into_iter();
+        let others = self.findings.iter().filter(|(name, _)| *name != uri.as_str()).map(|(_, f)| f);
+        let mut out: Vec<Diagnostic> = Vec::new();
+        for findings in own.chain(others) {
+            let found = findings.told.iter().filter(|(of, _)| of == uri).flat_map(|(_, list)| list);
+            let new =
+                |d: &&Diagnostic| !out.iter().any(|known| known.range == d.range && known.code == d.code);
+            let new: Vec<Diagnostic> = found.filter(new).cloned().collect();
+            out.extend(new);
+        }
+        out
     }
 
     fn send(&mut self, message: impl Into<Message>) {
@@ -203,7 +212,7 @@ impl Server {
             save: Some(true.into()),
             ..TextDocumentSyncOptions::default()
         };
-        let triggers = [".", "(", ",", "@"].map(str::to_owned).into();
+        let triggers = [".", "(", ",", "@", "\""].map(str::to_owned).into();
         ServerCapabilities {
             position_encoding: Some(self.client.encoding.kind()),
             text_document_sync: Some(TextDocumentSyncCapability::Options(sync)),

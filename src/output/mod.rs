@@ -104,12 +104,18 @@ fn exists(path: &Path) -> OutputError {
     OutputError::Create { path: path.to_owned(), why: "it exists, and `--no-clobber` keeps it".to_owned() }
 }
 
+/// Whether what was told of two files is of one.
+#[cfg(unix)]
+fn is_one(a: &fs::Metadata, b: &fs::Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    (a.dev(), a.ino()) == (b.dev(), b.ino())
+}
+
 /// Whether two names lead to one file.
 fn same_file(a: &Path, b: &Path) -> bool {
     #[cfg(unix)]
     if let (Ok(a), Ok(b)) = (fs::metadata(a), fs::metadata(b)) {
-        use std::os::unix::fs::MetadataExt;
-        return (a.dev(), a.ino()) == (b.dev(), b.ino());
+        return is_one(&a, &b);
     }
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }

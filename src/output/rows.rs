@@ -5,7 +5,7 @@ use std::io;
 
 use crate::film::{Aov, Film};
 use crate::shot::Settings;
-use crate::shot::settings::Tone;
+use crate::shot::settings::{Integrator, Tone};
 
 /// What a picture is before its pixels are known.
 #[derive(Clone, Debug)]
@@ -72,6 +72,18 @@ pub fn settings_line(s: &Settings) -> String {
     }
     let layers: Vec<&str> = s.aov.iter().map(|aov| aov.word()).collect();
     let integrator = format!("{:?}", s.integrator).to_lowercase();
-    line += &format!(", samples {}, integrator {integrator}, seed {}", s.samples, s.seed);
+    line += &format!(", samples {}", s.samples);
+    if let Some(error) = s.error {
+        line += &format!(", error {error}");
+    }
+    let filter = format!("{:?}", s.filter).to_lowercase();
+    line += &format!(", filter {filter}, integrator {integrator}");
+    if matches!(s.integrator, Integrator::Direct | Integrator::Path) {
+        line += &format!(", bounces {}", s.bounces);
+    }
+    if let Some(clamp) = s.clamp {
+        line += &format!(", clamp {clamp}");
+    }
+    line += &format!(", seed {}", s.seed);
     if layers.is_empty() { line } else { line + ", aov " + &layers.join(" ") }
 }

@@ -139,7 +139,7 @@ impl<'a> Builder<'a> {
     /// The cloud that a call of `points` names.
     pub fn read_cloud(&mut self, call: &Call) -> Result<Cloud, Diagnostic> {
         let Some(Value::Path { text, base, from_command_line }) = call.get("source") else {
-            let error = Diagnostic::error("E0402", "`points` needs a file or a solid").at(call.at, "");
+            let error = Diagnostic::error("E0404", "`points` needs a file or a solid").at(call.at, "");
             return Err(error.help("write `points(\"scan.ply\")` or `points(sphere(r: 1), samples: 2000)`"));
         };
         let path = self.input(text, base, *from_command_line, call.place("source"))?;

@@ -355,7 +355,7 @@ impl<'b, 'o> Lowering<'b, 'o> {
         let at = call.place("source");
         let Some(count) = call.number("samples") else {
             let error =
-                Diagnostic::error("E0402", "samples of a solid need a number: `samples:`").at(call.at, "");
+                Diagnostic::error("E0404", "samples of a solid need a number: `samples:`").at(call.at, "");
             return Err(error.help("write `points(sphere(r: 1), samples: 2000)`"));
         };
         if call.number("noise").is_some_and(|n| n < 0.0) {

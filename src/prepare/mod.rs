@@ -33,7 +33,7 @@ use crate::diag::{Diagnostic, Fault};
 use crate::geom::Aabb;
 use crate::scene::{BuildError, Call, Catalog, Draw, Scene};
 use crate::shot::settings::{self, Integrator, Overrides};
-use crate::shot::{Camera, Light, Material, Settings, Shot, World, camera, light, material};
+use crate::shot::{Camera, Settings, Shot, World, camera, light, material};
 use crate::solid::point_set::Solidity;
 use crate::solid::{Counts, table};
 use crate::source::Span;
@@ -120,12 +120,16 @@ pub fn catalog() -> Catalog {
 pub fn prepare(scene: &Scene, options: &Options) -> Result<Prepared, Vec<Diagnostic>> {
     let mut errors = Vec::new();
     let settings = keep(&mut errors, settings_of(scene, options));
-    let materials = keep(&mut errors, materials_of(scene));
-    let chosen = keep(&mut errors, camera_of(scene, options.camera.as_deref()));
+    let materials =
+        every(&mut errors, &scene.materials, |call| material::build(call).map_err(|e| complaint(call, e)));
+    let chosen = camera_of(&mut errors, scene, options.camera.as_deref());
     let known = materials.as_deref().unwrap_or_default();
     let lines = settings.as_ref().map_or(0, Settings::lines);
     let mut builder = Builder::new(options, known, lines);
-    let lights = keep(&mut errors, lights_of(scene, &mut builder));
+    let lights = every(&mut errors, scene.lights.iter().map(|named| &named.call), |call| {
+        let map = builder.environment(call)?;
+        light::build(call, map).map_err(|e| complaint(call, e))
+    });
     let bare = known.len() as u32;
     let mut built = |draws: &[Draw]| {
         let built = world(draws, &mut builder, options, bare);
@@ -158,6 +162,16 @@ fn keep<T>(errors: &mut Vec<Diagnostic>, result: Result<T, Diagnostic>) -> Optio
     result.map_err(|e| errors.push(e)).ok()
 }
 
+/// What all calls build; where some do not, each is told.
+fn every<'c, T>(
+    errors: &mut Vec<Diagnostic>,
+    calls: impl IntoIterator<Item = &'c Call>,
+    mut build: impl FnMut(&'c Call) -> Result<T, Diagnostic>,
+) -> Option<Vec<T>> {
+    let all: Vec<Option<T>> = calls.into_iter().map(|call| keep(errors, build(call))).collect();
+    all.into_iter().collect()
+}
+
 /// A builder's complaint as a diagnostic at its argument.
 fn complaint(call: &Call, e: BuildError) -> Diagnostic {
     Diagnostic::error("E0407", e.message).at(call.place(e.param), "").help(e.help)
@@ -175,29 +189,14 @@ fn settings_of(scene: &Scene, o: &Options) -> Result<Settings, Diagnostic> {
     Ok(settings)
 }
 
-fn materials_of(scene: &Scene) -> Result<Vec<Material>, Diagnostic> {
-    scene.materials.iter().map(|call| material::build(call).map_err(|e| complaint(call, e))).collect()
-}
-
-fn lights_of(scene: &Scene, builder: &mut Builder) -> Result<Vec<Light>, Diagnostic> {
-    let one = |call: &Call| {
-        let map = builder.environment(call)?;
-        light::build(call, map).map_err(|e| complaint(call, e))
-    };
-    scene.lights.iter().map(|named| &named.call).map(one).collect()
-}
-
-/// The camera asked for, or the first; `None` where the scene has none.
-fn camera_of(scene: &Scene, name: Option<&str>) -> Result<Option<Camera>, Diagnostic> {
-    let found = match name {
-        None => scene.cameras.first(),
-        Some(name) => {
-            let named = scene.cameras.iter().find(|c| c.name.as_deref() == Some(name));
-            Some(named.ok_or_else(|| unknown_camera(scene, name))?)
-        }
-    };
-    let build = |call| camera::build(call).map_err(|e| complaint(call, e));
-    found.map(|named| build(&named.call)).transpose()
+/// The camera asked for, or the first (`None` where the scene has none); mistakes in the others are told too.
+fn camera_of(errors: &mut Vec<Diagnostic>, scene: &Scene, name: Option<&str>) -> Option<Option<Camera>> {
+    let calls = scene.cameras.iter().map(|named| &named.call);
+    let all = every(errors, calls, |call| camera::build(call).map_err(|e| complaint(call, e)));
+    let Some(name) = name else { return all.map(|all| all.into_iter().next()) };
+    let found = scene.cameras.iter().position(|c| c.name.as_deref() == Some(name));
+    let found = keep(errors, found.ok_or_else(|| unknown_camera(scene, name)))?;
+    all.map(|all| all.into_iter().nth(found))
 }
 
 fn unknown_camera(scene: &Scene, name: &str) -> Diagnostic {

@@ -47,20 +47,23 @@ impl<'a, S: Scenery> Painter<'a, S> {
     pub fn tile(&self, tile: &Tile, progress: &Progress) -> Result<(Film, Rays, Counts), RenderError> {
         let mut film = Film::new(tile.size, &self.view.settings.aov)?;
         let mut tracer = Tracer::new(self.scenery);
-        let whole = self.beam(tile).map_or_else(Bundle::default, |beam| self.scenery.bundle(&beam));
-        for part in tile.parts() {
-            let cell = self.cell(&part);
-            // Rays past the tile are none of its bundle.
-            let bundle = if cell == part { &whole } else { &Bundle::default() };
-            if let Some(beam) = self.beam(&cell) {
-                tracer.bundle = self.scenery.part_of_bundle(bundle, &beam);
-            }
-            self.part(&mut tracer, &part, &cell, (tile, progress), &mut film);
-            if progress.gives_up() {
-                break;
-            }
+        match self.view.settings.error {
+            Some(error) => self.to_an_error(&mut tracer, error, (tile, progress), &mut film),
+            None => self.evenly(&mut tracer, (tile, progress), &mut film),
         }
         Ok((film, tracer.rays, tracer.scratch.solid.counts))
+    }
+
+    /// What the rays from the eye through a tile may meet.
+    pub(super) fn bundle(&self, tile: &Tile) -> Bundle {
+        self.beam(tile).map_or_else(Bundle::default, |beam| self.scenery.bundle(&beam))
+    }
+
+    /// Turns to a part of a tile: its rays meet less than those of the tile's bundle.
+    pub(super) fn turn_to(&self, tracer: &mut Tracer<S>, bundle: &Bundle, part: &Tile) {
+        if let Some(beam) = self.beam(part) {
+            tracer.bundle = self.scenery.part_of_bundle(bundle, &beam);
+        }
     }
 
     /// The rays from the eye through a tile, and as far around it as the filter reaches.

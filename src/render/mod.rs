@@ -6,6 +6,7 @@ mod filter;
 mod frame;
 mod ghosts;
 mod integrator;
+mod judged;
 mod layers;
 mod lighting;
 mod path;

@@ -47,11 +47,16 @@ struct Path {
     touched: bool,
     /// Light found.
     light: Vec3,
+    /// What light that has turned counts for at most.
+    most: f32,
 }
 
 impl Path {
     fn add(&mut self, light: Vec3) {
-        self.light += light * self.left * self.growth;
+        let light = light * self.left * self.growth;
+        let brightest = light.max_element();
+        let counts = if 0 < self.turns && self.most < brightest { self.most / brightest } else { 1.0 };
+        self.light += light * counts;
     }
 
     /// Goes on in a new direction.
@@ -81,6 +86,7 @@ impl<S: Scenery> Painter<'_, S> {
             from_eye: true,
             touched: false,
             light: Vec3::ZERO,
+            most: self.view.settings.clamp.map_or(f32::INFINITY, |most| most as f32),
         };
         let mut goes_on = self.first_step(tracer, &mut path, seen, sample);
         let mut passed = 0;

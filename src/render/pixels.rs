@@ -1,9 +1,7 @@
-//! The samples of pixels, and how many each needs.
+//! The samples of pixels, and what they tell of a pixel's error.
 //!
-//! Where an error is asked for, a pixel's samples double until its error is below. The error is told by how the four quarters
-//! of its samples differ: each quarter of a Sobol sequence is spread well by itself, so that this is nearer to the truth than
-//! how single samples differ, and still above it. A quarter may miss what is rare, so neighbours are judged together, within
-//! parts of the picture that are the same whatever is cropped.
+//! The error is told by how the four quarters of its samples differ: each quarter of a Sobol sequence is spread well by itself,
+//! so that this is nearer to the truth than how single samples differ, and still above it.
 
 use super::Progress;
 use super::integrator::Painter;
@@ -13,22 +11,18 @@ use super::scenery::{Scenery, Seen, Tracer};
 use super::tiles::Tile;
 use crate::film::Film;
 use crate::geom::Ray;
-use crate::num::srgb;
 use crate::solid::Counts;
 
 /// The pair of a sample that chooses a place on the lens: none of those that lights take.
 const LENS_PAIR: u32 = 1 << 20;
 
-/// So many samples every pixel has before it is judged: four in each quarter.
-const FIRST: u32 = 16;
-
 /// A pixel on its way.
 #[derive(Clone, Copy, Default)]
-struct Pixel {
+pub(super) struct Pixel {
     /// Colour and coverage of all samples.
     sum: [f32; 4],
     /// Samples taken.
-    taken: u32,
+    pub taken: u32,
     /// Brightness and number of the samples of each quarter.
     quarters: [(f64, u32); 4],
     /// The work of its rays.
@@ -37,19 +31,19 @@ struct Pixel {
 
 impl Pixel {
     /// Makes room for as many samples again: the quarters so far become two.
-    fn fold(&mut self) {
+    pub fn fold(&mut self) {
         let [a, b, c, d] = self.quarters;
         let both = |(x, n): (f64, u32), (y, m): (f64, u32)| (x + y, n + m);
         self.quarters = [both(a, b), both(c, d), (0.0, 0), (0.0, 0)];
     }
 
     /// The mean brightness.
-    fn brightness(&self) -> f64 {
+    pub fn brightness(&self) -> f64 {
         self.quarters.iter().map(|(sum, _)| sum).sum::<f64>() / f64::from(self.taken)
     }
 
     /// The squared standard error of the brightness; infinite where a single sample tells nothing.
-    fn variance(&self) -> f64 {
+    pub fn variance(&self) -> f64 {
         let mean = self.brightness();
         let quarters = self.quarters.iter().filter(|(_, n)| 0 < *n);
         let apart = |(sum, n): &(f64, u32)| f64::from(*n) * (sum / f64::from(*n) - mean).powi(2);
@@ -68,52 +62,29 @@ fn luminance([r, g, b, _]: [f32; 4]) -> f64 {
 }
 
 impl<S: Scenery> Painter<'_, S> {
-    /// The pixels that are judged together with those of a part: all of the part that they are in, where pixels are judged.
-    pub(super) fn cell(&self, part: &Tile) -> Tile {
-        match self.view.settings.error {
-            Some(_) => part.whole_part(self.view.settings.size),
-            None => *part,
-        }
-    }
-
-    /// Paints a part of a tile, or anything where the render is given up; `cell` is what is judged together with it.
-    pub(super) fn part(
+    /// Paints a tile with one number of samples for every pixel, or anything where the render is given up.
+    pub(super) fn evenly(
         &self,
         tracer: &mut Tracer<S>,
-        part: &Tile,
-        cell: &Tile,
         (tile, progress): (&Tile, &Progress),
         film: &mut Film,
     ) {
-        let most = self.view.settings.samples;
-        if self.view.settings.error.is_none() {
+        let whole = self.bundle(tile);
+        for part in tile.parts() {
+            self.turn_to(tracer, &whole, &part);
             for at in part.each() {
                 let mut pixel = Pixel::default();
-                self.begin(tracer, at, (&mut pixel, most), Some(tile), progress, film);
+                self.begin(tracer, at, (&mut pixel, self.view.settings.samples), Some(tile), progress, film);
                 self.end(&pixel, tile.index(at), film);
             }
-            return;
-        }
-        let mut pixels = vec![Pixel::default(); cell.pixels() as usize];
-        for (at, pixel) in cell.each().zip(&mut pixels) {
-            let shown = part.has(at).then_some(tile);
-            self.begin(tracer, at, (pixel, most.min(FIRST)), shown, progress, film);
-        }
-        while let Some(open) = self.open(cell, &pixels) {
-            for ((at, pixel), _) in cell.each().zip(&mut pixels).zip(open).filter(|(_, open)| *open) {
-                let (from, to) = (pixel.taken, most.min(2 * pixel.taken));
-                pixel.fold();
-                let quarter = |i| if i - from < from / 2 { 2 } else { 3 };
-                self.sample(tracer, at, (pixel, to), None, progress, quarter);
+            if progress.gives_up() {
+                break;
             }
-        }
-        for (at, pixel) in cell.each().zip(&pixels).filter(|(at, _)| part.has(*at)) {
-            self.end(pixel, tile.index(at), film);
         }
     }
 
     /// Takes the first samples of a pixel; where it belongs to a tile its layers are kept there.
-    fn begin(
+    pub(super) fn begin(
         &self,
         tracer: &mut Tracer<S>,
         at: [u32; 2],
@@ -133,34 +104,12 @@ impl<S: Scenery> Painter<'_, S> {
     }
 
     /// Writes a pixel that is done.
-    fn end(&self, pixel: &Pixel, index: usize, film: &mut Film) {
+    pub(super) fn end(&self, pixel: &Pixel, index: usize, film: &mut Film) {
         film.rgba[index] = pixel.sum.map(|s| s / pixel.taken as f32);
         if self.keeps_book {
             let sums = Sums { work: pixel.work, variance: pixel.variance(), samples: pixel.taken };
             layers::sum_up(film, index, &sums);
         }
-    }
-
-    /// Which pixels need more samples; `None` where none does.
-    fn open(&self, cell: &Tile, pixels: &[Pixel]) -> Option<Vec<bool>> {
-        let error = self.view.settings.error?;
-        let gain = libm::exp2(self.view.settings.exposure);
-        let squared = |pixel: &Pixel| {
-            let slope = srgb::slope((gain * pixel.brightness()).clamp(0.0, 1.0)) * gain;
-            pixel.variance() * slope * slope
-        };
-        let squared: Vec<f64> = pixels.iter().map(squared).collect();
-        let near = |[x, y]: [u32; 2]| {
-            let around =
-                Tile { x: x.saturating_sub(1), y: y.saturating_sub(1), size: [2 + x.min(1), 2 + y.min(1)] };
-            let near: Vec<f64> =
-                around.each().filter(|at| cell.has(*at)).map(|at| squared[cell.index(at)]).collect();
-            near.iter().sum::<f64>() / near.len() as f64
-        };
-        let most = self.view.settings.samples;
-        let is_open = |(at, pixel): ([u32; 2], &Pixel)| pixel.taken < most && error * error < near(at);
-        let open: Vec<bool> = cell.each().zip(pixels).map(is_open).collect();
-        open.contains(&true).then_some(open)
     }
 
     /// Keeps what the ray through a pixel's centre sees.
@@ -184,7 +133,7 @@ impl<S: Scenery> Painter<'_, S> {
 
     /// Takes samples of a pixel of the whole picture up to a number; `centre` is what the ray through its centre is known to
     /// see, `quarter` says where each sample counts.
-    fn sample(
+    pub(super) fn sample(
         &self,
         tracer: &mut Tracer<S>,
         [x, y]: [u32; 2],

@@ -31,10 +31,10 @@ impl Tile {
         cells([self.x, self.y, self.x + w, self.y + h], PART)
     }
 
-    /// All pixels, of a picture of a size, of the part that this one is or lies in.
-    pub fn whole_part(&self, size: [u32; 2]) -> Tile {
-        let [x, y] = [self.x, self.y].map(|at| at / PART * PART);
-        Tile { x, y, size: [PART.min(size[0] - x), PART.min(size[1] - y)] }
+    /// The whole tile, of a picture of a size, of which this one is what a crop left.
+    pub fn uncropped(&self, size: [u32; 2]) -> Tile {
+        let [x, y] = [self.x, self.y].map(|at| at / SIDE * SIDE);
+        Tile { x, y, size: [SIDE.min(size[0] - x), SIDE.min(size[1] - y)] }
     }
 
     /// Its pixels, row by row.

@@ -14,7 +14,7 @@ pub const DECL: Decl = Decl {
         Param::named(
             "error",
             Kind::Positive,
-            "samples are taken until a pixel's standard error is at most this, of a display's 0 to 1; `samples` is the most then",
+            "samples are taken where they help most until the root mean square error of each tile of 32 x 32 pixels is at most this, of a display's 0 to 1; `samples` is the most a pixel gets",
         ),
         Param::named(
             "filter",
@@ -37,6 +37,11 @@ pub const DECL: Decl = Decl {
             "bounces",
             Kind::Int(1, MAX_BOUNCES as i64),
             "how often light may turn on its way, for \"path\" and in glass and mirrors; default 16",
+        ),
+        Param::named(
+            "clamp",
+            Kind::Positive,
+            "light that has turned counts for at most this, radiance: rare bright paths speckle less, and light is lost; default none",
         ),
         Param::named("seed", Kind::Int(0, i64::MAX), "chooses the noise; default 0"),
     ],
@@ -134,13 +139,15 @@ pub struct Settings {
     pub exposure: f64,
     /// The curve, for pictures that are shown.
     pub tone: Tone,
-    /// Where given, samples are taken until the standard error of a pixel is at most this, of what a display shows from 0 to
-    /// 1; `samples` is then the most.
+    /// Where given, samples are taken where they help most until the root mean square error of each tile is at most this, of
+    /// what a display shows from 0 to 1; `samples` is the most that a pixel gets.
     pub error: Option<f64>,
     /// How samples are spread around their pixel.
     pub filter: Filter,
     /// How often light may turn on its way, for integrators that follow it; from 1 to [`MAX_BOUNCES`].
     pub bounces: u32,
+    /// The most that one path's light after its first turn counts for at a time, radiance.
+    pub clamp: Option<f64>,
     /// Chooses the noise.
     pub seed: u64,
 }
@@ -171,6 +178,7 @@ impl Default for Settings {
             error: None,
             filter: Filter::Box,
             bounces: 16,
+            clamp: None,
             seed: 0,
         }
     }
@@ -208,6 +216,7 @@ pub fn build(call: &Call) -> Result<Settings, BuildError> {
     settings.filter = Filter::of(call.text("filter").unwrap_or("box"));
     let bounces = whole(call, "bounces", 1, u64::from(MAX_BOUNCES))?;
     settings.bounces = bounces.map_or(settings.bounces, |n| n as u32);
+    settings.clamp = call.number("clamp");
     settings.seed = whole(call, "seed", 0, i64::MAX as u64)?.unwrap_or(0);
     Ok(settings)
 }

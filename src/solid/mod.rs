@@ -216,45 +216,53 @@ pub struct Counts {
 impl Counts {
     /// What was counted since an earlier state of the same counts.
     pub fn since(&self, before: &Counts) -> Counts {
-        Counts {
-            projections: self.projections - before.projections,
-            degree_falls: self.degree_falls - before.degree_falls,
-            crossings: self.crossings - before.crossings,
-            certificate_failures: self.certificate_failures - before.certificate_failures,
-            parity_repairs: self.parity_repairs - before.parity_repairs,
-            odd_chords: self.odd_chords - before.odd_chords,
-            caps: self.caps - before.caps,
-            patch_hits: self.patch_hits - before.patch_hits,
-            guides: self.guides - before.guides,
-            patches: self.patches - before.patches,
-            building: self.building - before.building,
-            leaf_queries: self.leaf_queries - before.leaf_queries,
-            leaves_skipped: self.leaves_skipped - before.leaves_skipped,
-            ties: self.ties - before.ties,
-            cleaned: self.cleaned - before.cleaned,
-            invalid_rays: self.invalid_rays - before.invalid_rays,
-            bad_leaves: self.bad_leaves - before.bad_leaves,
-        }
+        let mut since = *self;
+        since.each(before, |now, before| *now -= before);
+        since
     }
 
     /// Adds another thread's counts.
-    pub fn add(&mut self, o: &Counts) {
-        self.projections += o.projections;
-        self.degree_falls += o.degree_falls;
-        self.crossings += o.crossings;
-        self.certificate_failures += o.certificate_failures;
-        self.parity_repairs += o.parity_repairs;
-        self.odd_chords += o.odd_chords;
-        self.caps += o.caps;
-        self.patch_hits += o.patch_hits;
-        self.guides += o.guides;
-        self.patches += o.patches;
-        self.building += o.building;
-        self.leaf_queries += o.leaf_queries;
-        self.leaves_skipped += o.leaves_skipped;
-        self.ties += o.ties;
-        self.cleaned += o.cleaned;
-        self.invalid_rays += o.invalid_rays;
-        self.bad_leaves += o.bad_leaves;
+    pub fn add(&mut self, other: &Counts) {
+        self.each(other, |sum, other| *sum += other);
+    }
+
+    fn each(&mut self, other: &Counts, f: impl Fn(&mut u64, u64)) {
+        // Taken apart, so that none is left out.
+        let Counts {
+            projections,
+            degree_falls,
+            crossings,
+            certificate_failures,
+            parity_repairs,
+            odd_chords,
+            caps,
+            patch_hits,
+            guides,
+            patches,
+            building,
+            leaf_queries,
+            leaves_skipped,
+            ties,
+            cleaned,
+            invalid_rays,
+            bad_leaves,
+        } = self;
+        f(projections, other.projections);
+        f(degree_falls, other.degree_falls);
+        f(crossings, other.crossings);
+        f(certificate_failures, other.certificate_failures);
+        f(parity_repairs, other.parity_repairs);
+        f(odd_chords, other.odd_chords);
+        f(caps, other.caps);
+        f(patch_hits, other.patch_hits);
+        f(guides, other.guides);
+        f(patches, other.patches);
+        f(building, other.building);
+        f(leaf_queries, other.leaf_queries);
+        f(leaves_skipped, other.leaves_skipped);
+        f(ties, other.ties);
+        f(cleaned, other.cleaned);
+        f(invalid_rays, other.invalid_rays);
+        f(bad_leaves, other.bad_leaves);
     }
 }

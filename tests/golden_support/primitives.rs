@@ -211,6 +211,10 @@ pub fn scenes() -> Vec<Golden> {
 }
 
 /// The files that scenes read, by their names in the folder.
-pub fn assets() -> [(&'static str, Vec<u8>); 2] {
-    [("primitives/greys.png", hills()), ("primitives/octahedron.obj", OCTAHEDRON.as_bytes().to_vec())]
+pub fn assets() -> [(&'static str, Vec<u8>); 3] {
+    [
+        ("primitives/greys.png", hills()),
+        ("primitives/octahedron.obj", OCTAHEDRON.as_bytes().to_vec()),
+        ("cases/bowl.ply", super::cases::bowl()),
+    ]
 }

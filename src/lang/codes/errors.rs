@@ -1,6 +1,6 @@
 //! The codes of errors.
 
-use super::{Code, NONE, code};
+use super::{Code, code, takes};
 
 /// In their order.
 pub const CODES: &[Code] = &[
@@ -304,7 +304,12 @@ pub const CODES: &[Code] = &[
         "Is the name right? It is relative to the file that names it.",
         ["draw points(\"nowhere.ply\")", "draw points(sphere(r: 1), samples: 1000)"],
     ),
-    code("E0602", "A file name holds a zero byte.", "Write the name of a file.", NONE),
+    code(
+        "E0602",
+        "A file name holds a zero byte.",
+        "Write the name of a file.",
+        takes("strings have no escape for such a byte; programs that build scenes may put one in."),
+    ),
     code(
         "E0603",
         "A file lies outside of what a scene may read.",
@@ -333,7 +338,7 @@ pub const CODES: &[Code] = &[
         "E0606",
         "A file is of another kind than its name says, or is broken.",
         "The message says what it is.",
-        NONE,
+        takes("it takes a disk or a network that fails while the file is read."),
     ),
     code(
         "E0607",
@@ -374,17 +379,45 @@ pub const CODES: &[Code] = &[
             "$ pss render scene.pss -o a.png --size 8x6\ndraw sphere(r: 1)",
         ],
     ),
-    code("E0612", "Another run is making this picture.", "Wait for it, or write to another file.", NONE),
-    code("E0701", "Something nests too deep, or is too large to be read.", "Name parts with `let`.", NONE),
-    code("E0702", "Something is understood but not carried out yet.", "Write the scene without it.", NONE),
+    code(
+        "E0612",
+        "Another run is making this picture.",
+        "Wait for it, or write to another file.",
+        takes("it takes two runs of one picture at a time."),
+    ),
+    code(
+        "E0701",
+        "Something nests too deep, or is too large to be read.",
+        "Brackets, signs and lists nest up to 1000 deep. Name parts with `let`, or list them side by side.",
+        [
+            "fn ten(a) = [[[[[[[[[[a]]]]]]]]]]\nfn hundred(a) = ten(ten(ten(ten(ten(ten(ten(ten(ten(ten(a))))))))))\nfn more(a) = hundred(hundred(hundred(hundred(hundred(hundred(a))))))\nlet a = more(more(1))",
+            "fn ten(a) = [[[[[[[[[[a]]]]]]]]]]\nfn hundred(a) = ten(ten(ten(ten(ten(ten(ten(ten(ten(ten(a))))))))))\nfn more(a) = hundred(hundred(hundred(hundred(hundred(hundred(a))))))\nlet a = more(1)",
+        ],
+    ),
+    code(
+        "E0702",
+        "Something is understood but not carried out yet.",
+        "Write the scene without it.",
+        takes("it takes a program that offers less than `pss` does, built on its library."),
+    ),
     code(
         "E0703",
         "There are too many of something.",
         "Lists end at a million elements.",
         ["let a = for i in 0..2000, j in 0..2000 { i }", "let a = for i in 0..20, j in 0..20 { i }"],
     ),
-    code("E0704", "There is no memory to read the scene.", "Close other programs.", NONE),
-    code("E0705", "The scene is too large.", "Keep points in files of their own: `points(\"a.ply\")`.", NONE),
+    code(
+        "E0704",
+        "There is no memory to read the scene.",
+        "Close other programs.",
+        takes("it takes a machine whose memory is full."),
+    ),
+    code(
+        "E0705",
+        "The scene is too large.",
+        "Keep points in files of their own: `points(\"a.ply\")`.",
+        takes("it takes a scene of more than 256 MB."),
+    ),
     code(
         "E0706",
         "Functions call each other too deep.",
@@ -395,13 +428,15 @@ pub const CODES: &[Code] = &[
         "E0707",
         "The picture is too large for the memory.",
         "Make it smaller, or render it in parts with `--crop`.",
-        NONE,
+        takes("it takes a machine with less memory than the picture needs."),
     ),
     code(
         "E0708",
         "A shape cannot be measured here.",
         "Ask in the scene itself, of a shape that can be prepared.",
-        NONE,
+        takes(
+            "it takes a program that reads scenes and measures nothing, as an editor does while one types.",
+        ),
     ),
     code(
         "E0709",
@@ -416,7 +451,7 @@ pub const CODES: &[Code] = &[
         "E0710",
         "What the scene computes takes too much memory.",
         "Make shorter lists, or use one shape many times: `shape.array(list)`.",
-        NONE,
+        takes("it takes lists or shapes of 4 GiB."),
     ),
     code(
         "E0801",
@@ -473,6 +508,6 @@ pub const CODES: &[Code] = &[
         "E0900",
         "The program is wrong.",
         "This is a fault of pss, not of the scene; please report it.",
-        NONE,
+        takes("it takes a fault of the program."),
     ),
 ];

@@ -23,10 +23,11 @@ pub struct Code {
     pub told: &'static str,
     /// How it comes about, and what helps.
     pub why: &'static str,
-    /// A scene that is told so; empty where it takes more than scenes: a full disk, a fault. First lines `$ pss ...` are
-    /// commands of which the last tells (else `pss check scene.pss`), and a line `--- NAME` begins another file.
+    /// A scene that is told so; empty where it takes more than a scene on a page: a full disk, a fault. First lines
+    /// `$ pss ...` are commands of which the last tells (else `pss check scene.pss`), and a line `--- NAME` begins another
+    /// file.
     pub bad: &'static str,
-    /// The same scene, repaired.
+    /// The same scene, repaired; where there is none, what it takes.
     pub good: &'static str,
 }
 
@@ -36,7 +37,9 @@ impl Code {
         let indented =
             |scene: &str| scene.lines().map(|line| format!("        {line}\n")).collect::<String>();
         let mut out = format!("{}: {}\n\n    {}\n", self.code, self.told, self.why);
-        if !self.bad.is_empty() {
+        if self.bad.is_empty() {
+            out += &format!("\n    No scene on a page is told so: {}\n", self.good);
+        } else {
             out += &format!("\n    Told of\n\n{}\n    Not of\n\n{}", indented(self.bad), indented(self.good));
         }
         out
@@ -52,8 +55,10 @@ const fn code(
     Code { code, told, why, bad, good }
 }
 
-/// No scene shows it.
-const NONE: [&str; 2] = ["", ""];
+/// No scene shows it, as it takes something else.
+const fn takes(what: &'static str) -> [&'static str; 2] {
+    ["", what]
+}
 
 /// All codes: errors, then warnings, each in their order.
 pub fn all() -> impl Iterator<Item = &'static Code> {

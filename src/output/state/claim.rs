@@ -125,8 +125,7 @@ impl Drop for Claim {
 fn is_at(file: &File, path: &Path) -> bool {
     #[cfg(unix)]
     if let (Ok(a), Ok(b)) = (file.metadata(), fs::metadata(path)) {
-        use std::os::unix::fs::MetadataExt;
-        return (a.dev(), a.ino()) == (b.dev(), b.ino());
+        return crate::output::is_one(&a, &b);
     }
     cfg!(not(unix)) && file.metadata().is_ok() && path.exists()
 }
