@@ -31,7 +31,8 @@ pub enum Aov {
     Projections,
     /// Those, and questions to leaves.
     Cost,
-    /// The squared standard error of the pixel's brightness (Rec. 709 luminance), as its samples differ.
+    /// The squared standard error of the pixel's brightness (Rec. 709 luminance), as its quarters differ: an upper bound, on the
+    /// mean some two or three times the truth, as a whole sequence of samples is spread better than its quarters.
     Variance,
     /// How many samples the pixel has.
     Samples,
@@ -88,6 +89,11 @@ impl Aov {
     /// Whether it is known once all rays of a pixel are traced, and not from the one through its centre.
     pub const fn is_summed(self) -> bool {
         matches!(self, Aov::Projections | Aov::Cost | Aov::Variance | Aov::Samples)
+    }
+
+    /// Whether it tells of the insides that a ray goes through, so that it has to be known what has one.
+    pub const fn is_of_insides(self) -> bool {
+        matches!(self, Aov::Layers | Aov::Thickness | Aov::Wall | Aov::Ties | Aov::Parity)
     }
 
     /// The value of every channel where nothing is.

@@ -228,7 +228,8 @@ fn an_exr_says_what_it_was_made_of_and_nothing_of_how() {
     for word in [
         "pss.scene",
         "pss.settings",
-        "size 64x48, samples 2",
+        "size 64x48, samples 2, filter box, integrator ",
+        ", bounces 16, exposure 0, tone agx, seed 0",
         "software",
         concat!("pss ", env!("CARGO_PKG_VERSION")),
     ] {

@@ -48,6 +48,33 @@ fn layers_count_and_measure_what_lies_along_the_centre_ray() {
 }
 
 #[test]
+fn a_scan_drawn_alone_has_the_inside_that_it_was_measured_to_have() {
+    let text = "
+        camera(eye: [0, -10, 0], look_at: [0, 0, 0], height: 3, kind: \"orthographic\")
+        render(size: [9, 9], samples: 1, integrator: \"flat\", aov: [\"layers\", \"thickness\", \"wall\"])
+        draw points(sphere(r: 1), samples: 3000, seed: 1)";
+    let film = film_on(text, 1);
+    let at = |aov: Aov| f64::from(film.layer(aov).unwrap().data[9 * 4 + 4]);
+    assert_eq!(at(Aov::Layers), 1.0);
+    assert!((at(Aov::Thickness) - 2.0).abs() < 1e-2 && at(Aov::Wall) == at(Aov::Thickness));
+}
+
+#[test]
+fn owners_are_numbered_as_written_and_no_two_leaves_have_one_number() {
+    let text = "
+        camera(eye: [0, -10, 0], look_at: [0, 0, 0], height: 8, kind: \"orthographic\")
+        render(size: [8, 8], samples: 1, integrator: \"flat\", aov: [\"owner\", \"leaf\"])
+        draw plane(y: 2).clip(box([-4, -9, -4], [-2, 9, 4]))
+        draw box([-2, 0, -4], [0, 1, 4])
+        draw plane(y: 2).clip(box([0, -9, -4], [2, 9, 4]))
+        draw box([2, 0, -4], [4, 1, 4])";
+    let film = film_on(text, 1);
+    let row = |aov: Aov| [0, 2, 4, 6].map(|x| film.layer(aov).unwrap().data[8 * 4 + x]);
+    assert_eq!(row(Aov::Owner), [1.0, 2.0, 3.0, 4.0]);
+    assert_eq!(row(Aov::Leaf), [3.0, 1.0, 4.0, 2.0]);
+}
+
+#[test]
 fn what_a_pixel_is_charged_for_is_the_same_on_any_number_of_threads() {
     let text = "
         camera(eye: [0, -4, 1], look_at: [0, 0, 0], fov: 30deg)

@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             (shot.settings.samples, shot.settings.error) = (samples, None);
             rows.push(row(name, false, f64::from(samples), &shot, &truth));
         }
-        for error in [0.04, 0.02, 0.014, 0.01, 0.007, 0.005] {
+        for error in [0.04, 0.02, 0.01, 0.007, 0.005, 0.003] {
             (shot.settings.samples, shot.settings.error) = (4096, Some(error));
             rows.push(row(name, true, error, &shot, &truth));
         }

@@ -1,4 +1,4 @@
-//! One plot for each scene side by side: error against time, both logarithmic.
+//! One plot for each scene, in two rows: error against time, both logarithmic.
 
 use std::path::Path;
 
@@ -19,9 +19,9 @@ pub fn write(rows: &[Row], path: &str) -> Result<(), Box<dyn std::error::Error>>
 }
 
 fn draw(rows: &[Row], svg: &mut String) -> Result<(), Box<dyn std::error::Error>> {
-    let area = SVGBackend::with_string(svg, (1320, 440)).into_drawing_area();
+    let area = SVGBackend::with_string(svg, (1320, 880)).into_drawing_area();
     area.fill(&WHITE)?;
-    for (part, (scene, _)) in area.split_evenly((1, 3)).iter().zip(SCENES) {
+    for (part, (scene, _)) in area.split_evenly((2, 3)).iter().zip(SCENES) {
         let rows: Vec<&Row> = rows.iter().filter(|r| r.scene == scene).collect();
         let over = |of: fn(&Row) -> f64| {
             let (lo, hi) =

@@ -186,6 +186,11 @@ impl Object {
         self.core.holder(index)
     }
 
+    /// How many leaves there are, those of every copy counted; past 2^32 the count stays there.
+    pub fn leaf_count(&self) -> u32 {
+        self.core.count
+    }
+
     /// For each leaf the box in which it can matter, empty where it never does: a line that misses all of them sees what it
     /// would see without any.
     pub fn reaches(&self) -> &[Aabb] {

@@ -84,6 +84,7 @@ pub fn settings_line(s: &Settings) -> String {
     if let Some(clamp) = s.clamp {
         line += &format!(", clamp {clamp}");
     }
-    line += &format!(", seed {}", s.seed);
+    let tone = format!("{:?}", s.tone).to_lowercase();
+    line += &format!(", exposure {}, tone {tone}, seed {}", s.exposure, s.seed);
     if layers.is_empty() { line } else { line + ", aov " + &layers.join(" ") }
 }

@@ -33,7 +33,7 @@ use crate::diag::{Diagnostic, Fault};
 use crate::geom::Aabb;
 use crate::scene::{BuildError, Call, Catalog, Draw, Scene};
 use crate::shot::settings::{self, Integrator, Overrides};
-use crate::shot::{Camera, Settings, Shot, World, camera, light, material};
+use crate::shot::{Camera, Material, Owners, Settings, Shot, World, camera, light, material};
 use crate::solid::point_set::Solidity;
 use crate::solid::{Counts, table};
 use crate::source::Span;
@@ -131,8 +131,12 @@ pub fn prepare(scene: &Scene, options: &Options) -> Result<Prepared, Vec<Diagnos
         light::build(call, map).map_err(|e| complaint(call, e))
     });
     let bare = known.len() as u32;
+    // A picture of insides, or of what shows them, depends on what has one.
+    let shows_insides = settings.as_ref().is_some_and(|s| s.aov.iter().any(|aov| aov.is_of_insides()))
+        || known.iter().any(Material::is_clear);
+    let measure = options.measure_all || shows_insides;
     let mut built = |draws: &[Draw]| {
-        let built = world(draws, &mut builder, options, bare);
+        let built = world(draws, &mut builder, [measure, options.write_out], bare);
         built.map_err(|more| errors.extend(more)).ok()
     };
     let world = built(&scene.draws);
@@ -209,25 +213,29 @@ fn unknown_camera(scene: &Scene, name: &str) -> Diagnostic {
     }
 }
 
-/// All of these, and where they were written. `bare` is the material of faces that have none.
+/// All of these, and where they were written. `bare` is the material of faces that have none; `measure` and `write_out` are
+/// those of [`Options`].
 fn world(
     draws: &[Draw],
     builder: &mut Builder,
-    options: &Options,
+    [measure, write_out]: [bool; 2],
     bare: u32,
 ) -> Result<(World, Outline), Vec<Diagnostic>> {
     let materials = builder.materials;
-    let mut lowering = Lowering::new(builder, options.measure_all);
-    lowering.groups = Groups::of(draws.iter().map(|draw| &draw.shape), options.write_out);
+    let mut lowering = Lowering::new(builder, measure);
+    lowering.groups = Groups::of(draws.iter().map(|draw| &draw.shape), write_out);
     let mut errors = Vec::new();
     let mut solids = Vec::new();
     let mut places = Vec::new();
     let mut bounds = Aabb::EMPTY;
-    for draw in draws {
+    let mut owners = Owners::default();
+    for (number, draw) in (1..).zip(draws) {
         let first = lowering.leaves.len() as u32;
         match lowering.draw(&draw.shape, draw.at) {
             Ok(drawn) => {
+                owners.sheets.resize(lowering.sheets.len(), number);
                 if let Some(expr) = drawn.solid {
+                    owners.solids.push((first, number));
                     solids.push(expr);
                     places.push((draw.at, first..lowering.leaves.len() as u32, drawn.bounds));
                 }
@@ -245,8 +253,7 @@ fn world(
     // What turned out to stand once is not shared.
     drop(repeats);
     let mut whole = Expr::Or(solids);
-    let draws = places.iter().map(|(_, leaves, _)| leaves.start).collect();
-    let world = World::new(Object::new(leaves, &whole), sheets, bounds, bare).with_draws(draws);
+    let world = World::new(Object::new(leaves, &whole), sheets, bounds, bare).with_owners(owners);
     if let Expr::Or(solids) = &mut whole {
         let part = |(expr, (at, leaves, bounds)): (Expr, (Span, Range<u32>, Aabb))| {
             let own = &world.solids().leaves()[leaves.start as usize..leaves.end as usize];

@@ -62,7 +62,7 @@ impl Spread {
 
     /// A place by two numbers in [0, 1): pixels from the pixel's upper left corner, and the weight of a sample there, one on
     /// the mean.
-    pub fn place(&self, uv: [f64; 2]) -> ([f64; 2], f32) {
+    pub fn place(&self, uv: [f64; 2]) -> ([f64; 2], f64) {
         if self.shares.is_empty() {
             return (uv, 1.0);
         }
@@ -72,7 +72,7 @@ impl Spread {
             let within = ((u - below) / (self.shares[i] - below)).clamp(0.0, 1.0);
             (0.5 + self.radius * (2.0 * (i as f64 + within) / STEPS as f64 - 1.0), self.weights[i])
         });
-        ([x, y], (a * b) as f32)
+        ([x, y], a * b)
     }
 }
 
@@ -107,7 +107,7 @@ mod tests {
             for i in 0..n * n {
                 let uv = [(i / n) as f64 + 0.5, (i % n) as f64 + 0.5].map(|u| u / n as f64);
                 let ([x, _], weight) = spread.place(uv);
-                let weight = f64::from(weight) / (n * n) as f64;
+                let weight = weight / (n * n) as f64;
                 mass += weight;
                 first += weight * (x - 0.5);
                 moment += weight * (x - 0.5).powi(2);

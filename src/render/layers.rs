@@ -12,6 +12,7 @@ struct Facts<'a> {
     seen: Option<&'a Seen>,
     albedo: [f32; 3],
     owner: u32,
+    leaf: u64,
     /// What lies along the whole ray, where a layer asks for it.
     spans: &'a [Span],
     /// The work of tracing them.
@@ -37,15 +38,15 @@ pub fn keep<S: Scenery>(
     seen: Option<(&Seen, [f32; 3])>,
     tracer: &mut Tracer<S>,
 ) {
-    let along = |aov| matches!(aov, Aov::Layers | Aov::Thickness | Aov::Wall | Aov::Ties | Aov::Parity);
     let before = tracer.scratch.solid.counts;
-    let asked = film.layers.iter().any(|layer| along(layer.aov));
+    let asked = film.layers.iter().any(|layer| layer.aov.is_of_insides());
     let spans = if asked { tracer.scenery.spans(ray, &mut tracer.scratch) } else { Vec::new() };
     let facts = Facts {
         ray,
         seen: seen.map(|(seen, _)| seen),
         albedo: seen.map_or([0.0; 3], |(_, albedo)| albedo),
         owner: seen.map_or(0, |(seen, _)| tracer.scenery.owner(&seen.hit)),
+        leaf: seen.map_or(0, |(seen, _)| tracer.scenery.leaf(&seen.hit)),
         spans: &spans,
         along: tracer.scratch.solid.counts.since(&before),
     };
@@ -77,14 +78,14 @@ fn values(aov: Aov, facts: &Facts) -> Option<[f32; 3]> {
         |span: &Span| span.interval().intersect(crate::geom::Interval::AHEAD).length() * ray.dir.length();
     let value = match aov {
         Aov::Layers => spans.len() as f32,
-        Aov::Thickness => spans.iter().map(way).sum::<f64>() as f32,
+        Aov::Thickness => spans.iter().map(way).fold(0.0, |sum, way| sum + way) as f32,
         Aov::Wall => spans.first().map_or(0.0, way) as f32,
         Aov::Ties => along.ties as f32,
         Aov::Parity => along.parity_repairs as f32,
         Aov::Projections | Aov::Cost | Aov::Variance | Aov::Samples => return None,
         Aov::Depth => distance(ray, (*seen)?) as f32,
         Aov::Owner => seen.map(|_| facts.owner as f32)?,
-        Aov::Leaf => (u64::from(seen.as_ref()?.hit.boundary.leaf) + 1) as f32,
+        Aov::Leaf => seen.map(|_| facts.leaf as f32)?,
         Aov::Albedo => return seen.map(|_| facts.albedo),
         Aov::Position => return seen.map(|seen| seen.surface.point.as_vec3().to_array()),
         Aov::Normal => {

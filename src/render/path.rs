@@ -13,7 +13,7 @@ use super::sampler::Sample;
 use super::scenery::{Scenery, Seen, Tracer};
 use crate::geom::{Interval, Ray};
 use crate::shot::material::finish::{Share, Toward};
-use crate::shot::material::glass::{self, Glass};
+use crate::shot::material::glass::Glass;
 use crate::shot::material::{Finish, even_share};
 use crate::shot::settings::Integrator;
 use crate::shot::{Filling, Material, Meeting};
@@ -192,9 +192,7 @@ impl<S: Scenery> Painter<'_, S> {
         if eye.z <= 0.0 {
             return false;
         }
-        let Some(turn) = glass::turn(glass.facets, ratio, eye, place, choices(sample, path.turns)[0]) else {
-            return false;
-        };
+        let Some(turn) = glass.turn(ratio, eye, place, choices(sample, path.turns)[0]) else { return false };
         path.left *= turn.weight as f32;
         let side = if turn.through { -seen.surface.offset } else { seen.surface.offset };
         let came = match path.came {

@@ -19,34 +19,66 @@ const LENS_PAIR: u32 = 1 << 20;
 /// A pixel on its way.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Pixel {
-    /// Colour and coverage of all samples.
-    sum: [f32; 4],
+    /// Weighted colour and coverage of all samples: in `f64`, so that a late dim sample counts as an early one.
+    sum: [f64; 4],
+    /// Their weights.
+    weight: f64,
     /// Samples taken.
     pub taken: u32,
-    /// Brightness and number of the samples of each quarter.
-    quarters: [(f64, u32); 4],
+    /// The samples of each quarter.
+    quarters: [Quarter; 4],
     /// The work of its rays.
     work: Counts,
+}
+
+/// A quarter of a pixel's samples.
+#[derive(Clone, Copy, Default)]
+struct Quarter {
+    /// Weighted brightness.
+    sum: f64,
+    weight: f64,
+    taken: u32,
+}
+
+impl Quarter {
+    fn and(self, other: Quarter) -> Quarter {
+        Quarter {
+            sum: self.sum + other.sum,
+            weight: self.weight + other.weight,
+            taken: self.taken + other.taken,
+        }
+    }
+}
+
+/// What weighted sums are divided by. By their weights: a filter with negative lobes would make noise of an even light else. Of
+/// few samples the weights may cancel; their number is what they come to on the mean.
+fn whole(weight: f64, taken: u32) -> f64 {
+    let taken = f64::from(taken);
+    if 0.5 * taken < weight { weight } else { taken }
 }
 
 impl Pixel {
     /// Makes room for as many samples again: the quarters so far become two.
     pub fn fold(&mut self) {
         let [a, b, c, d] = self.quarters;
-        let both = |(x, n): (f64, u32), (y, m): (f64, u32)| (x + y, n + m);
-        self.quarters = [both(a, b), both(c, d), (0.0, 0), (0.0, 0)];
+        self.quarters = [a.and(b), c.and(d), Quarter::default(), Quarter::default()];
     }
 
     /// The mean brightness.
     pub fn brightness(&self) -> f64 {
-        self.quarters.iter().map(|(sum, _)| sum).sum::<f64>() / f64::from(self.taken)
+        luminance(self.mean())
+    }
+
+    /// The mean colour and coverage.
+    fn mean(&self) -> [f64; 4] {
+        self.sum.map(|sum| sum / whole(self.weight, self.taken))
     }
 
     /// The squared standard error of the brightness; infinite where a single sample tells nothing.
     pub fn variance(&self) -> f64 {
         let mean = self.brightness();
-        let quarters = self.quarters.iter().filter(|(_, n)| 0 < *n);
-        let apart = |(sum, n): &(f64, u32)| f64::from(*n) * (sum / f64::from(*n) - mean).powi(2);
+        let quarters = self.quarters.iter().filter(|q| 0 < q.taken);
+        let apart = |q: &Quarter| f64::from(q.taken) * (q.sum / whole(q.weight, q.taken) - mean).powi(2);
         let degrees = quarters.clone().count() as f64 - 1.0;
         if degrees == 0.0 {
             f64::INFINITY
@@ -57,8 +89,8 @@ impl Pixel {
 }
 
 /// Rec. 709 luminance.
-fn luminance([r, g, b, _]: [f32; 4]) -> f64 {
-    f64::from(0.2126 * r + 0.7152 * g + 0.0722 * b)
+fn luminance([r, g, b, _]: [f64; 4]) -> f64 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 impl<S: Scenery> Painter<'_, S> {
@@ -105,7 +137,7 @@ impl<S: Scenery> Painter<'_, S> {
 
     /// Writes a pixel that is done.
     pub(super) fn end(&self, pixel: &Pixel, index: usize, film: &mut Film) {
-        film.rgba[index] = pixel.sum.map(|s| s / pixel.taken as f32);
+        film.rgba[index] = pixel.mean().map(|mean| mean as f32);
         if self.keeps_book {
             let sums = Sums { work: pixel.work, variance: pixel.variance(), samples: pixel.taken };
             layers::sum_up(film, index, &sums);
@@ -164,12 +196,13 @@ impl<S: Scenery> Painter<'_, S> {
                     self.shown(tracer, &ray, seen.as_ref(), sample)
                 }
             };
-            let value = value.map(|v| v * weight);
+            let value = value.map(|v| f64::from(v) * weight);
             pixel.sum.iter_mut().zip(value).for_each(|(s, v)| *s += v);
+            pixel.weight += weight;
             if self.keeps_book {
-                let (sum, count) = &mut pixel.quarters[quarter(i)];
-                *sum += luminance(value);
-                *count += 1;
+                let more = Quarter { sum: luminance(value), weight, taken: 1 };
+                let quarter = &mut pixel.quarters[quarter(i)];
+                *quarter = quarter.and(more);
             }
         }
         pixel.taken = to;

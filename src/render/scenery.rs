@@ -57,6 +57,11 @@ pub trait Scenery: Sync {
         1
     }
 
+    /// The number of the leaf that a face belongs to, from 1.
+    fn leaf(&self, hit: &Hit) -> u64 {
+        u64::from(hit.boundary.leaf) + 1
+    }
+
     /// The linear colour that what was hit has itself.
     fn color(&self, _hit: &Hit, _point: DVec3, _scratch: &mut Scratch) -> Option<[f32; 3]> {
         None
@@ -108,6 +113,10 @@ impl Scenery for World {
 
     fn owner(&self, hit: &Hit) -> u32 {
         World::owner(self, hit)
+    }
+
+    fn leaf(&self, hit: &Hit) -> u64 {
+        World::leaf(self, hit)
     }
 
     fn color(&self, hit: &Hit, point: DVec3, scratch: &mut Scratch) -> Option<[f32; 3]> {

@@ -17,7 +17,7 @@ use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};
 pub const DECL: Decl = Decl {
     word: "light",
     group: Group::Light,
-    doc: "A sun (`direction`), a point light (`at`), an area light (`at`, `size` and `look_at`) or, by `color` or `image` alone, a sky.",
+    doc: "A sun (`direction`), a point light (`at`), an area light (`at`, `size` and `look_at`) or, by `color` or `image` alone, a sky. Only a sky is seen straight; a soft sun and an area light are seen in mirrors and through what bends light.",
     params: &[
         Param::named("direction", Kind::Vector(3), "a sun: the way its light travels"),
         Param::named("softness", Kind::Angle, "the sun's full angular diameter; default 0deg"),
@@ -25,7 +25,7 @@ pub const DECL: Decl = Decl {
         Param::named(
             "size",
             Kind::Vector(2),
-            "an area light: width and height of a rectangle in the middle of which `at` is",
+            "an area light: width and height of a rectangle in the middle of which `at` is; its light is that of a point light, so a larger one is dimmer to look at",
         ),
         Param::named("look_at", Kind::Vector(3), "the point that an area light faces; behind it is no light"),
         Param::named("falloff", Kind::Bool, "whether a point light fades with distance; default true"),

@@ -15,7 +15,7 @@ pub use environment::Environment;
 pub use light::Light;
 pub use material::Material;
 pub use settings::Settings;
-pub use world::{Hit, Surface, World};
+pub use world::{Hit, Owners, Surface, World};
 
 /// A prepared picture.
 #[derive(Debug)]

@@ -17,8 +17,16 @@ pub struct World {
     bare: u32,
     /// The solids by what fills them, where some are clear.
     clear: Option<Clear>,
-    /// For each solid drawn the first of its leaves, in the order written.
-    draws: Vec<u32>,
+    owners: Owners,
+}
+
+/// Which faces belong to what is drawn.
+#[derive(Debug, Default)]
+pub struct Owners {
+    /// For each solid drawn the first of its leaves and its number, in the order written.
+    pub solids: Vec<(u32, u32)>,
+    /// For each sheet the number of what it belongs to.
+    pub sheets: Vec<u32>,
 }
 
 /// The first thing a ray meets.
@@ -75,21 +83,28 @@ impl World {
     /// The union of `solids` and the sheets beside it. `bounds` is a box around what is bounded, `bare` the material
     /// of faces that have none.
     pub fn new(solids: Object, sheets: Vec<Leaf>, bounds: Aabb, bare: u32) -> World {
-        World { solids, sheets, bounds, bare, clear: None, draws: Vec::new() }
+        World { solids, sheets, bounds, bare, clear: None, owners: Owners::default() }
     }
 
-    /// The same with the first leaf of each solid drawn, so that faces can be told apart by them ([`World::owner`]).
-    pub fn with_draws(self, draws: Vec<u32>) -> World {
-        World { draws, ..self }
+    /// The same where it is known what was drawn, so that faces can be told apart by it ([`World::owner`]).
+    pub fn with_owners(self, owners: Owners) -> World {
+        World { owners, ..self }
     }
 
-    /// The number of what is drawn that a face belongs to, from 1 in the order written; sheets come after solids.
+    /// The number of what is drawn that a face belongs to, from 1 in the order written.
     pub fn owner(&self, hit: &Hit) -> u32 {
         if hit.sheet {
-            return (self.draws.len() as u32).saturating_add(hit.boundary.leaf).saturating_add(1);
+            return self.owners.sheets.get(hit.boundary.leaf as usize).copied().unwrap_or(0);
         }
         let leaf = self.solids.holder(hit.boundary.leaf);
-        self.draws.partition_point(|first| *first <= leaf) as u32
+        let past = self.owners.solids.partition_point(|(first, _)| *first <= leaf);
+        past.checked_sub(1).map_or(0, |last| self.owners.solids[last].1)
+    }
+
+    /// The number of the leaf that a face belongs to, from 1: those of solids in the order written, then those of sheets.
+    pub fn leaf(&self, hit: &Hit) -> u64 {
+        let before = if hit.sheet { u64::from(self.solids.leaf_count()) } else { 0 };
+        before + u64::from(hit.boundary.leaf) + 1
     }
 
     /// The same where light goes through some of the solids.

@@ -1,5 +1,8 @@
 //! A client of `pss lsp`, over its pipes as an editor speaks.
 
+// Each program uses a part.
+#![allow(dead_code)]
+
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 

@@ -103,7 +103,11 @@ fn begin(
         return Making::begin(outputs, &picture, None, live);
     };
     let identities = Arc::new(Identities::new(args, settings, &loaded.sources, &loaded.inputs));
-    picture.about = output::about(&identities.scene(), &output::settings_line(settings));
+    let mut line = output::settings_line(settings);
+    if let Some(camera) = &args.scene.camera {
+        line += &format!(", camera {camera}");
+    }
+    picture.about = output::about(&identities.scene(), &line);
     let keeping = match args.watch {
         true => None,
         false => Some(Keeping::new(args, first, settings, &identities, console)?),

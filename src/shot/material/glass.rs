@@ -2,15 +2,18 @@
 //!
 //! Which body is on which side of a face is not its business: intervals tell ([`crate::shot::clear`]).
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3};
 
 use super::finish::{Finish, Toward};
 use super::microfacet::{Facets, reflected};
+use super::rough_face::RoughFace;
 use super::{Make, Material, color, number, positive, roughness};
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};
 
 /// Something clear.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, Debug)]
 pub struct Glass {
     /// Of refraction, against that of empty space.
     pub ior: f64,
@@ -20,8 +23,8 @@ pub struct Glass {
     pub depth: f64,
     /// Of bodies that overlap, the one with the larger fills what they share.
     pub priority: f64,
-    /// Of its faces; `None` for polished ones.
-    pub facets: Option<Facets>,
+    /// Its faces; `None` for polished ones.
+    pub rough: Option<Arc<RoughFace>>,
 }
 
 /// What becomes of light at a face.
@@ -66,21 +69,19 @@ impl Glass {
         let share = (way / self.depth) as f32;
         Vec3::from_array(self.color.to_array().map(|c| if c == 1.0 { 1.0 } else { c.powf(share) }))
     }
-}
 
-/// Chooses whether light that is seen at a face was reflected or went through, and from where it came. Radiance grows by the
-/// square of the index where it enters a denser medium; that is left to the caller.
-pub fn turn(facets: Option<Facets>, ratio: f64, eye: DVec3, place: [f64; 2], lobe: f64) -> Option<Turn> {
-    let half = facets.map_or(DVec3::Z, |facets| facets.facing(eye, place));
-    let reflects = fresnel(eye.dot(half), ratio);
-    if lobe < reflects {
-        let dir = reflected(eye, half);
-        let weight = facets.map_or(1.0, |facets| facets.unhidden(eye, dir));
-        return (0.0 < dir.z).then_some(Turn { dir, weight, through: false });
+    /// Chooses whether light that is seen at a face was reflected or went through, and from where it came; `ratio` is the index
+    /// on the eye's side over that beyond. Radiance grows by the square of the index where it enters a denser medium; that is
+    /// left to the caller.
+    pub fn turn(&self, ratio: f64, eye: DVec3, place: [f64; 2], lobe: f64) -> Option<Turn> {
+        if let Some(rough) = &self.rough {
+            return rough.turn(ratio, eye, place, lobe);
+        }
+        if lobe < fresnel(eye.z, ratio) {
+            return Some(Turn { dir: reflected(eye, DVec3::Z), weight: 1.0, through: false });
+        }
+        Some(Turn { dir: refracted(eye, DVec3::Z, ratio)?, weight: 1.0, through: true })
     }
-    let dir = refracted(eye, half, ratio)?;
-    let weight = facets.map_or(1.0, |facets| facets.unhidden_through(dir));
-    (dir.z < 0.0).then_some(Turn { dir, weight, through: true })
 }
 
 /// A pane without thickness: what a sheet of glass is. Of the light that goes in, the part that is reflected to and fro comes
@@ -136,12 +137,13 @@ fn build(call: &Call) -> Result<Material, BuildError> {
             help: "light that goes through it would grow on its way".to_owned(),
         });
     }
+    let ior = positive(call, "ior", 1.5)?;
     let glass = Glass {
-        ior: positive(call, "ior", 1.5)?,
+        ior,
         color: Vec3::from_array(tint),
         depth: positive(call, "depth", 1.0)?,
         priority: number(call, "priority", 0.0)?,
-        facets: Facets::new(roughness(call, 0.0)?),
+        rough: Facets::new(roughness(call, 0.0)?).map(|facets| Arc::new(RoughFace::new(facets, ior))),
     };
     Ok(Material::new(tint, glass))
 }

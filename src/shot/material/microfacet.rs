@@ -89,23 +89,33 @@ impl Albedo {
 
     /// Measures facets that reflect a share of light by its angle to them (its cosine is given).
     pub fn new(facets: Facets, reflects: impl Fn(f64) -> f64) -> Albedo {
+        Albedo::measured(facets, [Self::STEPS, Self::SIDE], |eye, half| {
+            let light = reflected(eye, half);
+            if light.z <= 0.0 { 0.0 } else { reflects(eye.dot(half)) * facets.unhidden(eye, light) }
+        })
+    }
+
+    /// Measures what each facet sends on, by the direction to the eye and the facet's normal, at so many cosines and, squared,
+    /// facets.
+    pub fn measured(
+        facets: Facets,
+        [steps, side]: [usize; 2],
+        sends: impl Fn(DVec3, DVec3) -> f64,
+    ) -> Albedo {
         let at = |i: usize| {
             // At the horizon itself no facet is seen; the limit is taken from beside it.
-            let z = ((i as f64).max(0.125) / Self::STEPS as f64).powi(2);
+            let z = ((i as f64).max(0.125) / steps as f64).powi(2);
             let eye = DVec3::new((1.0 - z * z).sqrt(), 0.0, z);
-            let place = |k: usize| (k as f64 + 0.5) / Self::SIDE as f64;
+            let place = |k: usize| (k as f64 + 0.5) / side as f64;
             let one = |k: usize| {
                 // Steep facets, the last of the second number, matter most and are few: they are taken more densely.
-                let rest = 1.0 - place(k % Self::SIDE);
-                let half = facets.facing(eye, [place(k / Self::SIDE), 1.0 - rest * rest]);
-                let light = reflected(eye, half);
-                let sent = reflects(eye.dot(half)) * facets.unhidden(eye, light);
-                if light.z <= 0.0 { 0.0 } else { 2.0 * rest * sent }
+                let rest = 1.0 - place(k % side);
+                let half = facets.facing(eye, [place(k / side), 1.0 - rest * rest]);
+                2.0 * rest * sends(eye, half)
             };
-            let count = Self::SIDE * Self::SIDE;
-            (0..count).map(one).sum::<f64>() / count as f64
+            (0..side * side).map(one).sum::<f64>() / (side * side) as f64
         };
-        Albedo::of((0..=Self::STEPS).map(at).collect())
+        Albedo::of((0..=steps).map(at).collect())
     }
 
     /// Of a mirror without facets.

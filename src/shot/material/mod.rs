@@ -8,6 +8,7 @@ mod metal;
 pub mod microfacet;
 pub mod paint;
 mod plastic;
+pub mod rough_face;
 
 use std::sync::{Arc, LazyLock};
 
