@@ -24,13 +24,14 @@ const MOST: [u64; 3] = [1 << 21, 1 << 20, 1 << 17];
 
 /// What bars of volumes shall be at first, relative to the value, by the same: a twentieth of what is commonly allowed.
 const ENOUGH: [f64; 3] = [5e-5, 5e-5, 2e-4];
-/// Areas may have bars by so much wider: every edge that a line sees is one to it, along three axes.
-const WIDER: f64 = 10.0;
-/// Rounds after which an axis is chosen, and leaves up to which that is worth the lines.
-const PILOT: u32 = 2;
-const MANY: usize = 1000;
 /// And by which factor less each time that more is asked for.
 const FINER: f64 = 0.25;
+/// Areas may have bars by so much wider: every edge that a line sees is one to it, along three axes.
+const WIDER: f64 = 10.0;
+/// Rounds of lines after which an axis is chosen.
+const PILOT: u32 = 2;
+/// Leaves up to which choosing is worth the lines.
+const MANY: usize = 1000;
 
 /// Something measured over lines, at one accuracy after the other; what is told of one does not depend on which were asked for
 /// before.
@@ -90,7 +91,7 @@ impl Lines {
     fn told(&mut self, level: usize, integrand: &impl Integrand) -> (Found, bool) {
         while self.told.len() <= level && (self.told.is_empty() || !self.integral.is_spent()) {
             let share = self.enough * FINER.powi(self.told.len() as i32);
-            let found = self.integral.refine(share, integrand);
+            let found = self.integral.refine(self.told.len(), share, integrand);
             self.told.push(found);
         }
         let last = self.told.len() - 1;
@@ -119,16 +120,14 @@ impl Lines {
         let (found, is_open) = self.told(level, &Faces { world, bounds: self.bounds });
         let (value, err) = (found.values[0], found.bars[0]);
         let size = self.bounds.size();
-        let around = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
         // A face that is moved changes its neighbours along its rim.
         let err = err + 8.0 * self.shift * size.element_sum();
-        Measured { value, err, size: self.size(value, around), is_open }
+        Measured { value, err, size: self.size(value, self.bounds.surface()), is_open }
     }
 
     /// What faces that are off add to the volume, by all that the box shows of them.
     fn rounding(&self) -> f64 {
-        let size = self.bounds.size();
-        2.0 * self.shift * (size.x * size.y + size.y * size.z + size.z * size.x)
+        self.shift * self.bounds.surface()
     }
 
     /// What a bar is held against: the value, and where there is none what it would be of the whole box.

@@ -223,7 +223,7 @@ fn world(
     let mut errors = Vec::new();
     let mut solids = Vec::new();
     let mut places = Vec::new();
-    let mut bounds = Aabb::EMPTY;
+    let (mut bounds, mut extent) = (Aabb::EMPTY, Aabb::EMPTY);
     for draw in draws {
         let first = lowering.leaves.len() as u32;
         match lowering.draw(&draw.shape, draw.at) {
@@ -232,6 +232,7 @@ fn world(
                     solids.push(expr);
                     places.push((draw.at, first..lowering.leaves.len() as u32, drawn.bounds));
                 }
+                extent = extent.union(drawn.bounds);
                 if drawn.bounds.is_finite() {
                     bounds = bounds.union(drawn.bounds);
                 }
@@ -243,6 +244,7 @@ fn world(
         return Err(errors);
     }
     let Lowering { leaves, sheets, mut outline, repeats, .. } = lowering;
+    outline.extent = extent;
     // What turned out to stand once is not shared.
     drop(repeats);
     let mut whole = Expr::Or(solids);

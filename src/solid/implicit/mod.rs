@@ -4,6 +4,7 @@
 //! of the ray that is asked about. The solid ends where the box around
 //! the bounding shape ends; that it ends at the shape itself is left to set algebra.
 
+mod hull;
 mod jumps;
 mod roots;
 mod stretches;
@@ -11,7 +12,7 @@ mod tape;
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::block::Block;
 use super::table::{Build, Primitive};
@@ -56,8 +57,8 @@ fn build(call: &Call, bounds: &Aabb) -> Result<Arc<dyn Solid>, BuildError> {
 #[derive(Clone, Debug)]
 pub struct Implicit {
     formula: Arc<Formula>,
-    /// The box around what bounds it.
-    asked: Aabb,
+    /// What the formula leaves of the box around what bounds it.
+    hull: Aabb,
     /// The box in which it is traced: a little larger, see [`tolerance::MARGIN`].
     traced: Aabb,
 }
@@ -68,11 +69,13 @@ const SURFACE: u32 = 6;
 impl Implicit {
     /// A formula within a box; nothing where the box is empty or unbounded.
     pub fn new(formula: Arc<Formula>, bounds: Aabb) -> Implicit {
-        let traced = match bounds.is_finite() && !bounds.is_empty() {
-            true => bounds.inflated(tolerance::MARGIN * bounds.size().max_element()),
-            false => Aabb::EMPTY,
+        let bounded = bounds.is_finite() && !bounds.is_empty();
+        let hull = if bounded { hull::hull(&formula, &bounds, &DAffine3::IDENTITY) } else { Aabb::EMPTY };
+        let traced = match hull.is_empty() {
+            true => Aabb::EMPTY,
+            false => hull.inflated(tolerance::MARGIN * bounds.size().max_element()),
         };
-        Implicit { formula, asked: bounds, traced }
+        Implicit { formula, hull, traced }
     }
 }
 
@@ -82,7 +85,15 @@ impl Solid for Implicit {
     }
 
     fn extent_under(&self, to_from: &DAffine3) -> Aabb {
-        self.asked.transformed(to_from)
+        let image = self.hull.transformed(to_from);
+        let DMat3 { x_axis, y_axis, z_axis } = to_from.matrix3;
+        let turned = to_from.matrix3 != DMat3::from_diagonal(DVec3::new(x_axis.x, y_axis.y, z_axis.z));
+        if self.hull.is_empty() || !turned {
+            return image;
+        }
+        // The way back is the inverse to roundings.
+        let own = hull::hull(&self.formula, &self.hull, to_from);
+        own.inflated(tolerance::noise(image.farthest())).intersection(image)
     }
 
     /// Stretches of the ray's part in the box, from where the range begins until one with a crossing is done: see
