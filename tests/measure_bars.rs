@@ -4,41 +4,18 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use pss::lang::{Asked, Geometry, Measured, Reading};
-use pss::measure::Measuring;
+use measure_support::answer;
+use pss::lang::{Geometry, Measured};
 use pss::num::hash::Stream;
-use pss::prepare::{self, Options};
-use pss::scene::Scene;
-use pss::source::{SourceMap, Span};
 
-fn scene(text: &str) -> Scene {
-    let mut sources = SourceMap::default();
-    let file = sources.add("scene.pss", None, text);
-    let catalog = prepare::catalog();
-    let reading = Reading {
-        catalog: &catalog,
-        defines: &[],
-        files: None,
-        geometry: None,
-        expects: false,
-        memory: pss::lang::MEMORY,
-    };
-    pss::lang::read_with(&mut sources, file, &reading).unwrap().scene
-}
-
-/// What a shape measures, at a level of accuracy.
-fn measured(shape: &str, level: usize, ask: fn(&Measuring, &Asked) -> Measured) -> Measured {
-    let scene = scene(&format!("draw {shape}"));
-    let asked = Asked { shape: &scene.draws[0].shape, materials: &[], at: Span::default(), level };
-    ask(&Measuring::new(&Options::default()), &asked)
-}
+mod measure_support;
 
 fn volume(shape: &str, level: usize) -> Measured {
-    measured(shape, level, |m, asked| m.volume(asked).unwrap())
+    answer(shape, level, |m, asked| m.volume(asked).unwrap())
 }
 
 fn area(shape: &str, level: usize) -> Measured {
-    measured(shape, level, |m, asked| m.area(asked).unwrap())
+    answer(shape, level, |m, asked| m.area(asked).unwrap())
 }
 
 /// How many bars a value is from the truth; the bar is no wider than a share of the value.
@@ -197,11 +174,7 @@ fn points_thrown_at_random_agree() {
 
 #[test]
 fn boxes_of_what_is_cut_are_those_it_reaches() {
-    let bounds = |shape: &str| {
-        let scene = scene(&format!("draw {shape}"));
-        let asked = Asked { shape: &scene.draws[0].shape, materials: &[], at: Span::default(), level: 0 };
-        Measuring::new(&Options::default()).bounds(&asked).unwrap()
-    };
+    let bounds = |shape: &str| answer(shape, 0, |m, asked| m.bounds(asked).unwrap());
     let s = 0.75f64.sqrt();
     for (shape, min, max) in [
         ("sphere(r: 1) - box([0, -5, -5], [5, 5, 5])", [-1.0, -1.0, -1.0], [0.0, 1.0, 1.0]),

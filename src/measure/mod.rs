@@ -131,8 +131,9 @@ enum Fills {
 impl Fills {
     fn of(shape: &Shape) -> Fills {
         let mut shape = shape;
-        while let ShapeKind::Transform { child, .. } | ShapeKind::With { child, .. } | ShapeKind::Fit { child, .. } =
-            &shape.0.kind
+        while let ShapeKind::Transform { child, .. }
+        | ShapeKind::With { child, .. }
+        | ShapeKind::Fit { child, .. } = &shape.0.kind
         {
             shape = child;
         }
@@ -200,10 +201,12 @@ impl Known {
             return Extent { bounds: around, err: 0.0 };
         }
         let is_tight = self.fills == Fills::Nearly;
-        *self.reached.borrow_mut().get_or_insert_with(|| match extent::reached(self.world(), &around, is_tight) {
-            Some((bounds, err)) => Extent { bounds, err },
-            None if self.is_nothing() => Extent { bounds: Aabb::EMPTY, err: 0.0 },
-            None => Extent { bounds: around, err: around.size().max_element() },
+        *self.reached.borrow_mut().get_or_insert_with(|| {
+            match extent::reached(self.world(), &around, is_tight) {
+                Some((bounds, err)) => Extent { bounds, err },
+                None if self.is_nothing() => Extent { bounds: Aabb::EMPTY, err: 0.0 },
+                None => Extent { bounds: around, err: around.size().max_element() },
+            }
         })
     }
 

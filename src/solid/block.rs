@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::rounded_box::RoundedBox;
 use super::table::{Build, Primitive};
-use super::{Chord, Cost, Crossing, Scratch, Solid, Exact};
+use super::{Chord, Cost, Crossing, Exact, Scratch, Solid};
 use crate::geom::lean::is_between;
 use crate::geom::{Aabb, Lean, Ray};
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param, Value};

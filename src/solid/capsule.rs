@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::table::{Build, Primitive};
-use super::{Answer, Crossing, Scratch, Solid, Exact};
+use super::{Answer, Crossing, Exact, Scratch, Solid};
 use crate::geom::{Aabb, Interval, Ray};
 use crate::num::roots::ball;
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};

@@ -7,7 +7,7 @@ use glam::{DAffine3, DVec2, DVec3};
 
 use super::shaft::{Shaft, within};
 use super::table::{Build, Primitive};
-use super::{Chord, Cost, Crossing, Scratch, Solid, Exact};
+use super::{Chord, Cost, Crossing, Exact, Scratch, Solid};
 use crate::geom::{Aabb, Lean, Ray};
 use crate::num::roots;
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 
 use super::table::{Build, Primitive};
-use super::{Chord, Cost, Crossing, Scratch, Solid, Exact};
+use super::{Chord, Cost, Crossing, Exact, Scratch, Solid};
 use crate::geom::{Aabb, Lean, Ray};
 use crate::num::roots;
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param, Value};

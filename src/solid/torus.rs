@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 
 use super::table::{Build, Primitive};
-use super::{Answer, Crossing, Scratch, Solid, Exact};
+use super::{Answer, Crossing, Exact, Scratch, Solid};
 use crate::geom::{Aabb, Interval, Ray, tolerance};
 use crate::num::convex::{Bend, Knot, roots};
 use crate::num::roots::cube_root;

@@ -57,16 +57,20 @@ impl Extrusion {
         let mut step = self.height / f64::from(count);
         let largest = (1.0 - self.k * self.height).max_element().max(1.0);
         let bend = self.w * self.w * largest + 2.0 * self.w.abs() * self.k.abs().max_element();
-        let rise = |corner: DVec2, step: f64| 0.125 * step * step * bend * row.truncate().length() * corner.length();
+        let rise =
+            |corner: DVec2, step: f64| 0.125 * step * step * bend * row.truncate().length() * corner.length();
         let high = |piece: &Piece| {
             let [a, b] = piece.heights.map(|z| self.reach(row, piece.corner, z));
             a.max(b)
         };
         let corners = || self.outline.edges().iter().map(|[corner, _]| *corner);
-        let way = move |corner: DVec2| (0..count).map(move |i| Piece { corner, heights: [height(i), height(i + 1)] });
+        let way = move |corner: DVec2| {
+            (0..count).map(move |i| Piece { corner, heights: [height(i), height(i + 1)] })
+        };
         let mut reached = corners().flat_map(way).map(|piece| high(&piece)).fold(ends, f64::max);
         let may = |piece: &Piece, step: f64, reached: f64| reached < high(piece) + rise(piece.corner, step);
-        let mut open: Vec<Piece> = corners().flat_map(way).filter(|piece| may(piece, step, reached)).collect();
+        let mut open: Vec<Piece> =
+            corners().flat_map(way).filter(|piece| may(piece, step, reached)).collect();
         for _ in 0..HALVINGS {
             step *= 0.5;
             let halves = open.iter().flat_map(|Piece { corner, heights: [a, b] }| {
