@@ -97,9 +97,9 @@ fn verdicts_are_refined_until_they_are_decided() {
         "expect centroid(sphere(r: 1, at: [1, 2, 3])) ~= [1, 2, 3] within 0.001%\nexpect centroid(sphere(r: 1)) ~= [0, 0, 0] within 1e-5",
         "expect area(torus(major: 3, minor: 1)) ~= 4 * pi ** 2 * 3",
         "expect volume(capsule(r: 1.893, from: [0, 0, 0], to: [4.354, 0, 0])) ~= pi * 1.893**2 * 4.354 + 4/3 * pi * 1.893**3",
-        "expect area(cone(r: 2, top: 1, h: 3).rotate_x(0.3rad).scale(2)) ~= 4 * pi * (5 + 3 * sqrt(10))",
+        "expect area(cone(r1: 2, r2: 1, h: 3).rotate_x(0.3rad).scale(2)) ~= 4 * pi * (5 + 3 * sqrt(10))",
         "expect volume(sphere(r: [1, 2, 3]).scale([1, 1, 0.5]).rotate_x(50deg)) is 4 * pi",
-        "expect area(torus(major: 3, minor: 1) & box(size: 9)) ~= 4 * pi ** 2 * 3 within 0.001%",
+        "expect area(torus(major: 3, minor: 1) & box(size: 9)) ~= 4 * pi ** 2 * 3 within 0.005%",
         "expect volume(sphere(r: 1) | sphere(r: 1, at: [1, 0, 0])) ~= 9 * pi / 4 within 0.001%",
         "expect bounds(sphere(r: 1) - box([0, -5, -5], [5, 5, 5])).max.x ~= 0 within 1e-8",
         "expect bounds(implicit(x**2 + y**2 + z**2 <= 1, inside: box(size: 3))).size ~= [2, 2, 2] within 1e-5%",
@@ -124,7 +124,7 @@ fn verdicts_are_refined_until_they_are_decided() {
         ("expect volume(sphere(r: 1) & box(size: 9)) ~= 4.18879020478639 within 1e-12", "cannot be decided"),
         ("expect volume(sphere(r: 1) & box(size: 9)) is 4 * pi / 3", "cannot be decided"),
         ("expect volume(sphere(r: 1) & box(size: 9)) ~= 4 * pi / 3", "`~= ... within 0.00"),
-        ("expect volume(sphere(r: 1e-6)) is 0", "the left side is 4.188790204786391e-18"),
+        ("expect volume(sphere(r: 1e-6)) is 0", "the left side is 4.18879020478639e-18 ("),
     ] {
         assert!(told(text).contains(said), "{text}\n{}", told(text));
     }

@@ -28,7 +28,7 @@ fn off(found: &Aabb, min: DVec3, max: DVec3) -> f64 {
 fn boxes_of_formulas_are_around_them_and_as_tight_as_their_bars_say() {
     let one = DVec3::ONE;
     let far = dvec3(3.3, 1.7, 2.1);
-    let third = 1.0 / 3.0;
+    let third = 1.0f64 / 3.0;
     for (formula, size, min, max) in [
         ("x**2 + y**2 + z**2 <= 1", 100, -one, one),
         ("x**2 + y**2 + z**2 <= 1", 60, -one, one),

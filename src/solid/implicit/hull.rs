@@ -1,10 +1,10 @@
 //! A box around all points of a box, or of its image, at which a formula holds: certain, and tight where intervals tell it.
 //!
 //! From each side of the image's box a slab is sought that is proved to hold no point: its inner face goes inward by bisection. A slab
-//! is empty where every part of it is: where the interval of the formula's values over a part, or its mean value form f(m) + D (X - m)
-//! where all is continuous, does not reach zero, or where the part lies out of the box (branch and bound: Moore, Kearfott and
-//! Cloud 2009, chapters 5 and 10). Parts are halved across their longest side, those with the lowest value in the middle first: so
-//! a point at which the formula holds, and the slab is known not to be empty, is met soon. Everything is done in the frame of the
+//! is empty where every part of it is: where the interval of the formula's values over a part does not reach zero, each step's narrowed by
+//! its mean value form f(m) + D (X - m) where that is continuous, or where the part lies out of the box (branch and bound: Moore, Kearfott and
+//! Cloud 2009, chapters 5 and 10). Parts are halved across the side over which the values differ most (the smear rule: Kearfott 1996), as
+//! a ridge is not cut along, those with the lowest value in the middle first: so a point at which the formula holds, and the slab is known not to be empty, is met soon. Everything is done in the frame of the
 //! image, whose sides are the box's. Where lines of closed forms would be exact, such as the top of a ball, the bound is
 //! to [`FINEST`]; where intervals tell less it stays as far out as it is proved, never inside.
 //!
@@ -34,7 +34,7 @@ pub(super) fn hull(formula: &Formula, within: &Aabb, to_from: &DAffine3) -> Aabb
     if !from_to.is_finite() || !around.is_finite() || around.is_empty() {
         return around;
     }
-    let mut search = Search { formula, within, from_to, room: Room::default() };
+    let mut search = Search { formula, within, from_to, room: Room::default(), means: Vec::new() };
     let mut found = around;
     for axis in 0..3 {
         for far in [false, true] {
@@ -50,6 +50,8 @@ struct Search<'a> {
     within: &'a Aabb,
     from_to: DAffine3,
     room: Room,
+    /// What each step's values lie in beside what its operands say.
+    means: Vec<Enclosure>,
 }
 
 /// A part of a slab, with the value in its middle.
@@ -114,11 +116,8 @@ impl Search<'_> {
                 return false;
             }
             *left -= 1;
-            if self.is_out(&part) {
-                continue;
-            }
-            let size = part.size();
-            let (along, middle) = (longest(size), part.center());
+            let Some(along) = self.left(&part) else { continue };
+            let middle = part.center();
             if !(part.min[along] < middle[along] && middle[along] < part.max[along]) {
                 return false;
             }
@@ -163,8 +162,8 @@ impl Search<'_> {
         })
     }
 
-    /// Whether no point of a part is in the box and lets the formula hold.
-    fn is_out(&mut self, part: &Aabb) -> bool {
+    /// Across which side a part is halved; `None` where no point of it is in the box and lets the formula hold.
+    fn left(&mut self, part: &Aabb) -> Option<usize> {
         let sides = |p: &Aabb| std::array::from_fn(|i| Enclosure::new(p.min[i], p.max[i]));
         let steps = &self.formula.steps;
         let outer: [Enclosure; 3] = sides(part);
@@ -172,29 +171,43 @@ impl Search<'_> {
         for (axis, side) in own.iter_mut().enumerate() {
             *side = side.intersect(Enclosure::new(self.within.min[axis], self.within.max[axis]));
             if side.is_empty() {
-                return true;
+                return None;
             }
         }
         let values = tape::enclose(steps, &own, &mut self.room);
         if self.is_above(values) {
-            return true;
+            return None;
         }
-        if values.breaks.any() {
-            return false;
-        }
-        let middle = part.center();
-        let own_middle = self.own(middle.to_array().map(Enclosure::point));
-        let mut mean = tape::enclose(steps, &own_middle, &mut self.room);
+        let spread = self.narrow(part, outer);
         let own = self.own(outer);
+        let values = tape::enclose_within(steps, &own, &self.means, &mut self.room);
+        (!self.is_above(values)).then(|| largest(spread))
+    }
+
+    /// The mean value form of every step over a part, to [`Search::means`], and by how much the formula's differs over each side.
+    fn narrow(&mut self, part: &Aabb, sides: [Enclosure; 3]) -> DVec3 {
+        let steps = &self.formula.steps;
+        let (middle, own) = (part.center().to_array().map(Enclosure::point), self.own(sides));
+        let own_middle = self.own(middle);
+        tape::enclose(steps, &own_middle, &mut self.room);
+        self.means.clone_from(&self.room.enclosures);
+        let (size, mut spread) = (part.size(), part.size());
         for axis in 0..3 {
             let rates = self.from_to.matrix3.col(axis);
             let slope = tape::slope(steps, &own, rates, &mut self.room);
-            if slope.value.breaks.any() || slope.rate.breaks.any() {
-                return false;
+            let away = sides[axis] - middle[axis];
+            for (mean, slope) in self.means.iter_mut().zip(&self.room.slopes) {
+                let smooth = !slope.value.breaks.any() && !slope.rate.breaks.any();
+                *mean = if smooth {
+                    *mean + slope.rate.times(away)
+                } else {
+                    Enclosure::new(f64::NEG_INFINITY, f64::INFINITY)
+                };
             }
-            mean = mean + slope.rate.times(outer[axis] - Enclosure::point(middle[axis]));
+            let steepest = slope.rate.lo.abs().max(slope.rate.hi.abs());
+            spread[axis] = size[axis] * if steepest.is_finite() { steepest } else { 1.0 };
         }
-        !mean.breaks.any() && self.is_above(mean)
+        spread
     }
 
     /// Whether the formula holds for none of these values.
@@ -203,7 +216,7 @@ impl Search<'_> {
     }
 }
 
-fn longest(size: DVec3) -> usize {
-    let longer = usize::from(size.x < size.y);
-    if size[longer] < size.z { 2 } else { longer }
+fn largest(of: DVec3) -> usize {
+    let larger = usize::from(of.x < of.y);
+    if of[larger] < of.z { 2 } else { larger }
 }
