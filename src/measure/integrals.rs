@@ -10,7 +10,7 @@
 //! which a grid of lines through its box sees nothing may be anything in it: its box is added to the bar. Where something is seen, other
 //! pieces of it that are much smaller may still be missed.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 use super::adaptive::{Found, Integral, Integrand, WIDTH};
 use crate::csg::{Leaf, Object, Scratch, Spans};
@@ -165,7 +165,8 @@ fn unmet(world: &World) -> Vec<Aabb> {
     let solids = world.solids();
     let boxes = solids.leaves().iter().zip(solids.reaches());
     let heavy = boxes.filter(|(leaf, reach)| {
-        leaf.solid.cost() == Cost::Heavy && reach.is_finite() && 0.0 < reach.size().min_element()
+        let may_be = !leaf.solid.extent_under(&DAffine3::IDENTITY).is_empty();
+        leaf.solid.cost() == Cost::Heavy && may_be && reach.is_finite() && 0.0 < reach.size().min_element()
     });
     heavy.filter(|(leaf, reach)| !is_met(leaf, reach)).map(|(_, reach)| *reach).collect()
 }

@@ -59,7 +59,7 @@ pub struct Implicit {
     formula: Arc<Formula>,
     /// What the formula leaves of the box around what bounds it.
     hull: Aabb,
-    /// The box in which it is traced: a little larger, see [`tolerance::MARGIN`].
+    /// The box in which it is traced: see [`traced`].
     traced: Aabb,
 }
 
@@ -71,12 +71,27 @@ impl Implicit {
     pub fn new(formula: Arc<Formula>, bounds: Aabb) -> Implicit {
         let bounded = bounds.is_finite() && !bounds.is_empty();
         let hull = if bounded { hull::hull(&formula, &bounds, &DAffine3::IDENTITY) } else { Aabb::EMPTY };
-        let traced = match hull.is_empty() {
-            true => Aabb::EMPTY,
-            false => hull.inflated(tolerance::MARGIN * bounds.size().max_element()),
-        };
+        let traced = if bounded { traced(&hull, &bounds) } else { Aabb::EMPTY };
         Implicit { formula, hull, traced }
     }
+}
+
+/// How much smaller than the box asked a hull is, along some axis, before it is traced in a box of its own.
+const SMALL: f64 = 0.25;
+
+/// The box asked, or where the hull is small in it one around that; by [`tolerance::MARGIN`] larger. Corners of the latter are
+/// multiples of a power of two some hundredths of its size: so the middle of a ray's part has few digits, and is by symmetry what it
+/// seems, so that how the formula rounds there does not follow from how far the hull was proved.
+fn traced(hull: &Aabb, asked: &Aabb) -> Aabb {
+    let whole = asked.inflated(tolerance::MARGIN * asked.size().max_element());
+    let size = hull.size().max_element();
+    let unit = f64::from_bits(size.max(0.0).to_bits() >> 52 << 52) / 64.0;
+    if hull.is_empty() || unit <= 0.0 || (SMALL * asked.size()).cmple(hull.size()).all() {
+        return whole;
+    }
+    let hull = hull.inflated(tolerance::MARGIN * size);
+    let own = Aabb { min: (hull.min / unit).floor() * unit, max: (hull.max / unit).ceil() * unit };
+    if own.is_finite() { own.intersection(whole) } else { whole }
 }
 
 impl Solid for Implicit {
