@@ -76,7 +76,8 @@ impl Implicit {
     }
 }
 
-/// How much smaller than the box asked a hull is, along some axis, before it is traced in a box of its own.
+/// How much smaller than the box asked a hull is, along two axes, before it is traced in a box of its own: what is flat is met by lines
+/// across it.
 const SMALL: f64 = 0.25;
 
 /// The box asked, or where the hull is small in it one around that; by [`tolerance::MARGIN`] larger. Corners of the latter are
@@ -86,7 +87,9 @@ fn traced(hull: &Aabb, asked: &Aabb) -> Aabb {
     let whole = asked.inflated(tolerance::MARGIN * asked.size().max_element());
     let size = hull.size().max_element();
     let unit = f64::from_bits(size.max(0.0).to_bits() >> 52 << 52) / 64.0;
-    if hull.is_empty() || unit <= 0.0 || (SMALL * asked.size()).cmple(hull.size()).all() {
+    let mut shares = (hull.size() / asked.size()).to_array();
+    shares.sort_by(f64::total_cmp);
+    if hull.is_empty() || unit <= 0.0 || SMALL <= shares[1] {
         return whole;
     }
     let hull = hull.inflated(tolerance::MARGIN * size);
