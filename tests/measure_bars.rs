@@ -4,18 +4,18 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use measure_support::answer;
+use measure_support::answers;
 use pss::lang::{Geometry, Measured};
 use pss::num::hash::Stream;
 
 mod measure_support;
 
 fn volume(shape: &str, level: usize) -> Measured {
-    answer(shape, level, |m, asked| m.volume(asked).unwrap())
+    answers(shape, &[level], |m, asked| m.volume(asked).unwrap()).remove(0)
 }
 
 fn area(shape: &str, level: usize) -> Measured {
-    answer(shape, level, |m, asked| m.area(asked).unwrap())
+    answers(shape, &[level], |m, asked| m.area(asked).unwrap()).remove(0)
 }
 
 /// How many bars a value is from the truth; the bar is no wider than a share of the value.
@@ -174,7 +174,7 @@ fn points_thrown_at_random_agree() {
 
 #[test]
 fn boxes_of_what_is_cut_are_those_it_reaches() {
-    let bounds = |shape: &str| answer(shape, 0, |m, asked| m.bounds(asked).unwrap());
+    let bounds = |shape: &str| answers(shape, &[0], |m, asked| m.bounds(asked).unwrap()).remove(0);
     let s = 0.75f64.sqrt();
     for (shape, min, max) in [
         ("sphere(r: 1) - box([0, -5, -5], [5, 5, 5])", [-1.0, -1.0, -1.0], [0.0, 1.0, 1.0]),

@@ -1,22 +1,22 @@
 //! Boxes and emptiness of what is clipped, turned, or given by a formula, against closed forms.
 
 use glam::{DVec3, dvec3};
-use measure_support::answer;
+use measure_support::answers;
 use pss::geom::Aabb;
 use pss::lang::{Extent, Geometry, Measured};
 
 mod measure_support;
 
 fn bounds(shape: &str) -> Extent {
-    answer(shape, 0, |m, asked| m.bounds(asked).unwrap())
+    answers(shape, &[0], |m, asked| m.bounds(asked).unwrap()).remove(0)
 }
 
 fn is_empty(shape: &str) -> bool {
-    answer(shape, 0, |m, asked| m.is_empty(asked).unwrap())
+    answers(shape, &[0], |m, asked| m.is_empty(asked).unwrap()).remove(0)
 }
 
 fn volume(shape: &str) -> Measured {
-    answer(shape, 0, |m, asked| m.volume(asked).unwrap())
+    answers(shape, &[0], |m, asked| m.volume(asked).unwrap()).remove(0)
 }
 
 /// How far the sides of a box are off.

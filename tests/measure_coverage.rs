@@ -64,13 +64,14 @@ fn solid(seed: u64) -> Solid {
     Solid { text: format!("{text}.rotate(axis: {axis:?}, by: {by}deg) & box(size: 100)"), volume, area }
 }
 
-/// Looks at a solid, each finer than the one before, at most; lines are spent before.
-const LOOKS: usize = 9;
+/// Looks at a solid, each finer than the one before; lines are spent before the last.
+const LOOKS: [usize; 10] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9];
 
 /// What is found of the volume, or of the area.
 fn looks(text: &str, of_area: bool) -> Vec<Measured> {
-    let all = answers(text, LOOKS, |m, asked| if of_area { m.area(asked) } else { m.volume(asked) }.unwrap());
-    let last = all.iter().position(|found| !found.is_open).unwrap_or(LOOKS);
+    let all =
+        answers(text, &LOOKS, |m, asked| if of_area { m.area(asked) } else { m.volume(asked) }.unwrap());
+    let last = all.iter().position(|found| !found.is_open).unwrap_or(LOOKS.len() - 1);
     all[..=last].to_vec()
 }
 

@@ -6,7 +6,7 @@ use pss::prepare::{self, Options};
 use pss::source::{SourceMap, Span};
 
 /// What is answered of a shape at each level of accuracy asked, by one who keeps what was measured.
-pub fn answers<T>(shape: &str, levels: usize, ask: impl Fn(&Measuring, &Asked) -> T) -> Vec<T> {
+pub fn answers<T>(shape: &str, levels: &[usize], ask: impl Fn(&Measuring, &Asked) -> T) -> Vec<T> {
     let mut sources = SourceMap::default();
     let file = sources.add("scene.pss", None, format!("draw {shape}"));
     let catalog = prepare::catalog();
@@ -16,10 +16,5 @@ pub fn answers<T>(shape: &str, levels: usize, ask: impl Fn(&Measuring, &Asked) -
     let scene = pss::lang::read_with(&mut sources, file, &reading).unwrap().scene;
     let measuring = Measuring::new(&Options::default());
     let asked = |level| Asked { shape: &scene.draws[0].shape, materials: &[], at: Span::default(), level };
-    (0..=levels).map(|level| ask(&measuring, &asked(level))).collect()
-}
-
-/// The answer at one level.
-pub fn answer<T>(shape: &str, level: usize, ask: impl Fn(&Measuring, &Asked) -> T) -> T {
-    answers(shape, 0, |measuring, asked| ask(measuring, &Asked { level, ..*asked })).remove(0)
+    levels.iter().map(|level| ask(&measuring, &asked(*level))).collect()
 }
