@@ -23,7 +23,7 @@ fn half_spaces_along_the_axes_bound_what_they_make_together() {
         ("!(!box([100, 0, 0], [101, 1, 1]))".to_owned(), [100.0, 0.0, 0.0], [101.0, 1.0, 1.0]),
         ("half_space(x > 0) & half_space(y > 0) & half_space(z > 0) & sphere(r: 1)".to_owned(), [0.0; 3], [1.0; 3]),
         ("difference(half_space(x > 0), [half_space(x > 1), half_space(y < 0), half_space(y > 1), half_space(z < 0), half_space(z > 1)])".to_owned(), [0.0; 3], [1.0; 3]),
-        (format!("implicit(x < 0.5, inside: {CUBE})"), [0.0; 3], [1.0, 2.0, 3.0]),
+        (format!("implicit(x < 0.5, inside: {CUBE})"), [0.0; 3], [0.5, 2.0, 3.0]),
     ] {
         let have = bounds(&shape);
         let near = |a: DVec3, b: [f64; 3]| (a - DVec3::from_array(b)).abs().max_element() < 1e-12;

@@ -94,9 +94,16 @@ fn verdicts_are_refined_until_they_are_decided() {
         "expect volume(box(size: 2)) is 8\nexpect volume(box(size: 2)) <= 8\nexpect not (volume(box(size: 2)) < 8)",
         "expect volume(box(size: [200, 100, 3]) - cylinder(r: 0.5, h: 9).move([0, 0, -5])) < 59999",
         "expect volume(tube([[0, 0, 0], [10, 10, 10]], r: 0.01)) ~= 0.0054456 within 1%",
-        "expect centroid(sphere(r: 1, at: [1, 2, 3])) is [1, 2, 3]\nexpect centroid(sphere(r: 1)) ~= [0, 0, 0]",
-        "expect bounds(sphere(r: 1) - box([0, -5, -5], [5, 5, 5])).max.x is 0",
-        "expect bounds(implicit(x**2 + y**2 + z**2 <= 1, inside: box(size: 3))).size is [2, 2, 2]",
+        "expect centroid(sphere(r: 1, at: [1, 2, 3])) ~= [1, 2, 3] within 0.001%\nexpect centroid(sphere(r: 1)) ~= [0, 0, 0] within 1e-5",
+        "expect area(torus(major: 3, minor: 1)) ~= 4 * pi ** 2 * 3",
+        "expect volume(capsule(r: 1.893, from: [0, 0, 0], to: [4.354, 0, 0])) ~= pi * 1.893**2 * 4.354 + 4/3 * pi * 1.893**3",
+        "expect area(cone(r1: 2, r2: 1, h: 3).rotate_x(0.3rad).scale(2)) ~= 4 * pi * (5 + 3 * sqrt(10))",
+        "expect volume(sphere(r: [1, 2, 3]).scale([1, 1, 0.5]).rotate_x(50deg)) is 4 * pi",
+        "expect area(torus(major: 3, minor: 1) & box(size: 9)) ~= 4 * pi ** 2 * 3 within 0.005%",
+        "expect volume(sphere(r: 1) | sphere(r: 1, at: [1, 0, 0])) ~= 9 * pi / 4 within 0.001%",
+        "expect bounds(sphere(r: 1) - box([0, -5, -5], [5, 5, 5])).max.x ~= 0 within 1e-8",
+        "expect bounds(implicit(x**2 + y**2 + z**2 <= 1, inside: box(size: 3))).size ~= [2, 2, 2] within 1e-5%",
+        "expect bounds(implicit(x**2 + y**2 + z**2 <= 1, inside: box(size: 100))).max.x ~= 1 within 1e-5%",
         "expect volume(sphere(r: 1)) == 4 * pi / 3 or volume(sphere(r: 1)) > 4.18879020478639",
     ] {
         assert!(read(text).is_ok(), "{text}\n{}", told(text));
@@ -105,11 +112,36 @@ fn verdicts_are_refined_until_they_are_decided() {
         ("expect volume(sphere(r: 1)) > 4.1888", "is not met"),
         ("expect volume(sphere(r: 1)) is 4.189", "is not met"),
         ("expect volume(box(size: 2)) < 8", "is not met"),
+        ("expect volume(sphere(r: 1)) is 4.18881", "is not met"),
+        ("expect volume(sphere(r: 1)) is 4.1888", "is not met"),
+        ("expect volume(sphere(r: 1)) ~= 4.1888", "is not met"),
+        ("expect volume(sphere(r: 1)) == 4.18880", "is not met"),
         // Closer than any number of lines tells.
-        ("expect volume(sphere(r: 1)) < 4.18879020478639", "cannot be decided: the left side is 4.1887"),
-        ("expect volume(sphere(r: 1)) ~= 4.18879020478639 within 1e-12", "cannot be decided"),
+        (
+            "expect volume(sphere(r: 1) & box(size: 9)) < 4.18879020478639",
+            "cannot be decided: the left side is 4.1887",
+        ),
+        ("expect volume(sphere(r: 1) & box(size: 9)) ~= 4.18879020478639 within 1e-12", "cannot be decided"),
+        ("expect volume(sphere(r: 1) & box(size: 9)) is 4 * pi / 3", "cannot be decided"),
+        ("expect volume(sphere(r: 1) & box(size: 9)) ~= 4 * pi / 3", "`~= ... within 0.00"),
+        ("expect volume(sphere(r: 1e-6)) is 0", "the left side is 4.18879020478639e-18 ("),
     ] {
         assert!(told(text).contains(said), "{text}\n{}", told(text));
+    }
+}
+
+#[test]
+fn comparisons_that_stay_open_are_warned_of_where_nothing_is_expected() {
+    let lens = "let v = volume(sphere(r: 1) & sphere(r: 1, at: [1, 0, 0]))\n";
+    // What both hold are two caps, 5 pi / 12.
+    for (text, count) in [
+        ("print v == 5 * pi / 12", 1),
+        ("print v < 5 * pi / 12 + 1e-9", 1),
+        ("print v < 5 * pi / 12 + 0.001", 0),
+        ("print volume(sphere(r: 1)) == 4 / 3 * pi", 0),
+    ] {
+        let read = read(&format!("{lens}{text}")).unwrap();
+        assert_eq!(read.warnings.iter().filter(|w| w.code == "W0128").count(), count, "{text}");
     }
 }
 

@@ -144,8 +144,7 @@ fn union(all: &[(u32, Aabb)]) -> Aabb {
 }
 
 fn area(all: &[(u32, Aabb)]) -> f64 {
-    let s = union(all).size();
-    if all.is_empty() { 0.0 } else { s.x * s.y + s.y * s.z + s.z * s.x }
+    if all.is_empty() { 0.0 } else { union(all).surface() }
 }
 
 /// Parts of a range of two or more boxes, each half-open, and how many: the largest is split until there are enough.

@@ -75,6 +75,12 @@ impl Aabb {
         self.max - self.min
     }
 
+    /// The area of the faces.
+    pub fn surface(&self) -> f64 {
+        let size = self.size();
+        2.0 * (size.x * size.y + size.y * size.z + size.z * size.x)
+    }
+
     /// The length of the diagonal.
     pub fn diagonal(&self) -> f64 {
         self.size().length()

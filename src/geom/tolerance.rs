@@ -104,9 +104,5 @@ pub fn reached(size: f64) -> f64 {
     POINTS * size
 }
 
-/// A measured number is taken to be the one it is compared with where its bar holds that one and is no wider than this share of
-/// it: some hundred thousand lines tell a ball's volume as well. What is wrong by more than its bar is told in any case.
-pub const SAME: f64 = 1e-5;
-
 /// A bar so narrow, as a share, is made of roundings: no more lines tell more.
 pub const ROUNDINGS: f64 = 1e-10;

@@ -18,6 +18,9 @@ use crate::source::Span;
 
 /// More things measured than this in one number are not told apart any more.
 const MOST: usize = 64;
+/// Measured numbers below the one, and from the other on, are written with a power of ten.
+const SMALL: f64 = 1e-5;
+const LARGE: f64 = 1e9;
 /// Functions of more arguments have no rest: their corners are too many.
 const CORNERS: usize = 6;
 
@@ -174,17 +177,32 @@ impl Estimate {
         Some(finer)
     }
 
-    /// The number in the digits that its bar leaves, and one more.
+    /// The number in the digits that its bar leaves, down to that of the bar's first one, as it is read back.
     pub fn digits(&self) -> String {
-        let bar = self.bar();
-        if bar <= tolerance::ROUNDINGS * self.size() || !bar.is_finite() {
-            return format!("{}", self.value + 0.0);
+        let (bar, x) = (self.bar(), self.value);
+        if bar <= tolerance::ROUNDINGS * self.size() || !bar.is_finite() || !x.is_finite() {
+            return if x != 0.0 && x.abs() < SMALL { format!("{x:e}") } else { format!("{}", x + 0.0) };
         }
-        let places = (1.0 - bar.log10().floor()).clamp(0.0, 17.0) as usize;
-        let fixed = format!("{:.*}", places, self.value);
-        let short =
-            if fixed.contains('.') { fixed.trim_end_matches('0').trim_end_matches('.') } else { &fixed };
-        if short == "-0" { "0".to_owned() } else { short.to_owned() }
+        let first = |x: f64| x.abs().log10().floor();
+        // Nothing is left of a number below its bar; zeros that are no digits are not written where there are many.
+        let kept = first(x) - first(bar);
+        if x == 0.0 || kept < 0.0 {
+            return "0".to_owned();
+        }
+        let written = format!("{:.*e}", kept.min(17.0) as usize, x);
+        let (digits, power) = written.split_once('e').unwrap_or((&written, "0"));
+        let digits =
+            if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits };
+        if (SMALL..LARGE).contains(&x.abs()) {
+            let places = (-first(bar)).max(0.0) as usize;
+            let rounded: f64 = format!("{digits}e{power}").parse().unwrap_or(x);
+            let fixed = format!("{rounded:.places$}");
+            return match fixed.contains('.') {
+                true => fixed.trim_end_matches('0').trim_end_matches('.').to_owned(),
+                false => fixed,
+            };
+        }
+        format!("{digits}e{power}")
     }
 }
 
@@ -307,8 +325,23 @@ mod tests {
 
     #[test]
     fn numbers_have_the_digits_that_their_bars_leave() {
-        for (value, err, told) in [(4.18881, 1.8e-4, "4.18881"), (60000.0, 0.3, "60000"), (8.0, 1e-14, "8")] {
-            assert_eq!(estimate(value, err).digits(), told);
+        for (value, err, told) in [
+            (4.18881, 1.8e-4, "4.1888"),
+            (60000.0, 0.3, "60000"),
+            (8.0, 1e-14, "8"),
+            (20396.8, 8.4, "20397"),
+            (20396.8, 84.0, "20400"),
+            (12569271332061.0, 6.2e9, "1.2569e13"),
+            (4.18879e-18, 1.1e-21, "4.189e-18"),
+            (-4.18879e-7, 1.1e-9, "-4.19e-7"),
+            (4.1887902e-18, 0.0, "4.1887902e-18"),
+            (1e-9, 1e-3, "0"),
+            (-0.2, 0.3, "-0.2"),
+        ] {
+            let written = estimate(value, err).digits();
+            assert_eq!(written, told);
+            let back = written.parse::<f64>().unwrap();
+            assert!((back - value).abs() <= err);
         }
     }
 }

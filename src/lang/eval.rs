@@ -406,6 +406,7 @@ impl Machine<'_> {
                 continue;
             }
             if let Some(holds) = self.compare(*op, &left.value, &right.value) {
+                self.warn_of_open(at);
                 left = Located { value: Val::Bool(holds), at };
                 continue;
             }

@@ -4,12 +4,12 @@ use super::arithmetic;
 use super::ast::{Expect, Expr};
 use super::estimate::is_measured;
 use super::eval::Machine;
-use super::nearly::{Measure, distance, size};
+use super::nearly::{Measure, apart, distance, size};
 use super::queries::Asked;
 use super::value::{Eval, Located, Val};
 use super::verdict::Relation;
 use crate::diag::{Diagnostic, Fault};
-use crate::scene::{BooleanOp, Operand, Shape, ShapeKind};
+use crate::scene::Shape;
 use crate::source::Span;
 
 /// What `~=` allows where nothing else is said, a share of the right side.
@@ -40,11 +40,14 @@ impl Machine<'_> {
         let left = self.located(&expect.left)?;
         let right = self.located(right)?;
         let room = self.room(expect, *nearly, [&left, &right])?;
-        if let Some(verdict) = self.measured(&left, &right, room, *nearly && expect.within.is_none()) {
+        if let Some(verdict) = self.measured(&left, &right, room) {
             return Ok(match verdict {
                 Some(true) => None,
                 Some(false) => Some(self.differs(&left, &right, room, at)),
-                None => Some(undecided(self.sides(&left.value, &right.value), at)),
+                None => {
+                    let error = undecided(self.sides(&left.value, &right.value), at);
+                    Some(error.help(self.decidable(&left, &right)))
+                }
             });
         }
         let holds = self.agree(&left, &right, room)?;
@@ -74,19 +77,22 @@ impl Machine<'_> {
         Ok(match verdicts {
             [true, true] => None,
             [false, false] => Some(self.unmet(condition, at)?),
-            _ => Some(undecided(open, at)),
+            _ => {
+                let help = "leave room for the bar, or say how far two sides may differ: `expect volume(part) ~= 6.43 within 0.01%`";
+                Some(undecided(open, at).help(help))
+            }
         })
     }
 
     /// The verdict on two sides of which one was measured; the inner `None` where it stays open, the outer where neither was.
-    fn measured(&self, a: &Located, b: &Located, room: Room, alone: bool) -> Option<Option<bool>> {
+    fn measured(&self, a: &Located, b: &Located, room: Room) -> Option<Option<bool>> {
         if !(is_measured(&a.value) || is_measured(&b.value)) {
             return None;
         }
         let relation = match room {
             Room::None => Relation::Same,
-            Room::Absolute(apart) => Relation::Within { apart, or_same: false },
-            Room::Share(share) => Relation::Within { apart: share * size(&b.value), or_same: alone },
+            Room::Absolute(apart) => Relation::Within(apart),
+            Room::Share(share) => Relation::Within(share * size(&b.value)),
         };
         self.related_all(&a.value, &b.value, relation)
     }
@@ -157,9 +163,7 @@ impl Machine<'_> {
 
     /// Two solids are the same where their symmetric difference is empty.
     pub fn same_solid(&self, a: &Shape, b: &Shape, at: Span) -> Eval<bool> {
-        let operand = |shape: &Shape| Operand { shape: shape.clone(), at };
-        let kind = ShapeKind::Boolean { op: BooleanOp::Xor, operands: vec![operand(a), operand(b)] };
-        let shape = Shape::new(kind, at);
+        let shape = apart(a, b, at);
         let Some(geometry) = self.geometry else {
             let error = Diagnostic::error("E0708", "solids cannot be compared here").at(at, "no geometry");
             return Err(error.help("compare them in the scene itself").into());
@@ -170,6 +174,23 @@ impl Machine<'_> {
             Some(error) => error.into(),
             None => Diagnostic::error("E0708", "the solids cannot be compared").at(at, "").into(),
         })
+    }
+
+    /// What `within` would be decided of two sides: what they are apart with the bar, in one digit more than that asks for.
+    fn decidable(&self, left: &Located, right: &Located) -> String {
+        let [a, b] = [left, right].map(|side| self.as_compared(&side.value, side.at));
+        let far = self.most_apart(&a, &b).unwrap_or(f64::INFINITY);
+        let one_digit = |x: f64| {
+            let unit = 10f64.powi(x.log10().floor() as i32);
+            format!("{:e}", (x / unit).ceil() * unit).parse::<f64>().unwrap_or(x)
+        };
+        let of = size(&b);
+        let enough = if 0.0 < of {
+            format!("{}%", one_digit(100.0 * far / of))
+        } else {
+            format!("{}", one_digit(far))
+        };
+        format!("the bar of error becomes no narrower; `~= ... within {enough}` is decided")
     }
 
     /// The complaint about a condition, with both sides of a comparison.
@@ -217,8 +238,7 @@ impl Machine<'_> {
 fn undecided(sides: String, at: Span) -> Diagnostic {
     let error =
         Diagnostic::error("E0801", "an expectation cannot be decided").at(at, "within the bar of error");
-    let error = error.note(format!("cannot be decided: {sides}")).fault(Fault::Unmet);
-    error.help("say how far the two sides may differ: `expect volume(part) ~= 6.43 within 0.01%`")
+    error.note(format!("cannot be decided: {sides}")).fault(Fault::Unmet)
 }
 
 /// A number in few digits, however small.

@@ -76,6 +76,12 @@ pub fn size(value: &Val) -> f64 {
     }
 }
 
+/// What is in one of two solids alone.
+pub fn apart(a: &Shape, b: &Shape, at: Span) -> Shape {
+    let operand = |shape: &Shape| Operand { shape: shape.clone(), at };
+    Shape::new(ShapeKind::Boolean { op: BooleanOp::Xor, operands: vec![operand(a), operand(b)] }, at)
+}
+
 /// Lines along each axis on which a place is sought where two shapes differ: a square of so many.
 const LINES: usize = 9;
 
@@ -83,9 +89,7 @@ impl Machine<'_> {
     /// Where two shapes differ, in words; `None` where no such place is found.
     pub fn witness(&self, a: &Shape, b: &Shape, at: Span) -> Option<String> {
         let geometry = self.geometry?;
-        let operand = |shape: &Shape| Operand { shape: shape.clone(), at };
-        let kind = ShapeKind::Boolean { op: BooleanOp::Xor, operands: vec![operand(a), operand(b)] };
-        let both = Shape::new(kind, at);
+        let both = apart(a, b, at);
         let asked = |shape| Asked { shape, materials: &self.materials, at, level: 0 };
         let point = inner_point(geometry, &asked(&both))?;
         let side = if geometry.inside(&asked(a), point).ok()? { "left" } else { "right" };

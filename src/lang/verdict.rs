@@ -9,6 +9,7 @@ use super::estimate::{Estimate, components, gathered, is_measured};
 use super::eval::Machine;
 use super::print::text;
 use super::value::Val;
+use crate::diag::Diagnostic;
 use crate::geom::tolerance;
 use crate::source::Span;
 
@@ -30,29 +31,27 @@ pub enum Relation {
     Below,
     /// Or the same.
     AtMost,
-    /// They are the same, as far as can be measured.
+    /// They are the same to roundings.
     Same,
-    /// They are no farther apart, or the same where `or_same`.
-    Within { apart: f64, or_same: bool },
+    /// They are no farther apart.
+    Within(f64),
 }
 
 impl Relation {
-    /// Whether it holds of a difference that is known to within a bar; `None` where that is open. `last` says that the bar
-    /// becomes no narrower.
-    fn holds(self, difference: &Estimate, last: bool) -> Option<bool> {
+    /// Whether it holds of a difference wherever in its bar that is, or nowhere in it; `None` where neither. A bar that is made of
+    /// roundings is none.
+    fn holds(self, difference: &Estimate) -> Option<bool> {
         let (apart, bar, size) = (difference.value, difference.bar(), difference.size());
-        let is_same = apart.abs() <= bar && bar <= tolerance::SAME * size;
         let is_rounded = apart.abs() <= bar && bar <= tolerance::ROUNDINGS * size;
         match self {
             Relation::Below | Relation::AtMost if apart + bar < 0.0 => Some(true),
             Relation::Below | Relation::AtMost if bar < apart => Some(false),
             Relation::Below => is_rounded.then_some(false),
-            Relation::AtMost => (is_rounded || last && is_same).then_some(true),
+            Relation::AtMost => is_rounded.then_some(true),
             Relation::Same if bar < apart.abs() => Some(false),
-            Relation::Same => is_same.then_some(true),
-            Relation::Within { apart: most, .. } if apart.abs() + bar <= most => Some(true),
-            Relation::Within { or_same: true, .. } if is_same => Some(true),
-            Relation::Within { apart: most, .. } => (most < apart.abs() - bar).then_some(false),
+            Relation::Same => is_rounded.then_some(true),
+            Relation::Within(most) if apart.abs() + bar <= most => Some(true),
+            Relation::Within(most) => (most < apart.abs() - bar).then_some(false),
         }
     }
 }
@@ -65,7 +64,7 @@ impl Machine<'_> {
         for level in 1.. {
             self.doubts.level.set(self.doubts.level.get().max(level - 1));
             let finer = self.geometry.and_then(|g| difference.at_level(level, g, &self.materials));
-            if let Some(verdict) = relation.holds(&difference, finer.is_none()) {
+            if let Some(verdict) = relation.holds(&difference) {
                 return Some(verdict);
             }
             difference = finer?;
@@ -114,6 +113,28 @@ impl Machine<'_> {
         });
         // What is taken for open is what the comparison says, turned or not.
         Some(if op == InfixOp::Unequal && verdict.is_some() { !holds } else { holds })
+    }
+
+    /// How far two sides may be apart at most, of vectors in any component: their difference and its bar.
+    pub fn most_apart(&self, a: &Val, b: &Val) -> Option<f64> {
+        let pairs = components(a)?.into_iter().zip(components(b)?);
+        let far = |(a, b): (Val, Val)| {
+            let difference = Estimate::apply(&[Estimate::read(&a)?, Estimate::read(&b)?], |x| x[0] - x[1]);
+            Some(difference.value.abs() + difference.bar())
+        };
+        pairs.map(far).try_fold(0.0, |most: f64, far| Some(most.max(far?)))
+    }
+
+    /// Warns of comparisons that what was measured leaves open, where nothing is expected and they are taken for something.
+    pub fn warn_of_open(&mut self, at: Span) {
+        if self.doubts.taken.get().is_some() {
+            return;
+        }
+        for open in self.doubts.open.take() {
+            let warning = Diagnostic::warning("W0128", "a comparison is closer than what was measured tells");
+            let warning = warning.at(at, "within the bar of error").note(open);
+            self.warn(warning.help("compare with room for the bar: `volume(part) < 6.43 + 0.01`"));
+        }
     }
 
     /// A value by what was measured for the comparisons so far.

@@ -6,13 +6,15 @@
 //! half the difference of two such means is one of the variance of both together; variances of quarters add up.
 //!
 //! Which cells are cut follows from a first set of points: what they say of the cells left is too little, as cells where they
-//! missed an edge by chance were not cut. What is told is the sum over a second set, which no cut depends on; where it tells of
-//! so much more error that cells are cut for it, it is drawn anew. A cell is at most twice as large as those around it: edges go
+//! missed an edge by chance were not cut. What is told is the sum over a second set, which no cut depends on: whenever cells are
+//! cut it is drawn anew, in those too that are left, as those in which it found an edge would be gone. A cell is at most twice as large as those around it: edges go
 //! on from cell to cell, and where the first set would miss one in a large cell the small ones beside it have seen it. Without
 //! this the sum has a bias, as what is rare is missed where it matters most.
 //!
-//! The bar is Student's at one in a thousand, with the degrees of freedom that variances of unlike size leave (Satterthwaite
-//! 1946), and no less than what the two sets differ by.
+//! The bar is Student's, with the degrees of freedom that variances of unlike size leave (Satterthwaite 1946), and no less than
+//! what the two sets differ by. Whoever asks again until something is decided has as many chances to be misled as looks: the
+//! first look misses once in two thousand times, each look more half as often, so that all together miss once in a thousand
+//! (alpha spending: Lan and DeMets 1983).
 
 use rayon::prelude::*;
 
@@ -60,18 +62,26 @@ impl Sums {
         self.variances.iter().sum()
     }
 
-    fn bar(&self, k: usize) -> f64 {
+    fn bar(&self, k: usize, look: usize) -> f64 {
         if self.variances[k] <= 0.0 {
             return 0.0;
         }
-        TAILS * student(self.variances[k] * (self.variances[k] / self.squares[k])) * self.variances[k].sqrt()
+        let freedom = self.variances[k] * (self.variances[k] / self.squares[k]);
+        TAILS * student(normal(look), freedom) * self.variances[k].sqrt()
     }
 }
 
-/// Student's t, two-sided one in a thousand, by the expansion in the degrees of freedom (Fisher and Cornish 1960); within a
+/// How many standard deviations a normal number is off but for once in 2000 times at the first look, and at least twice as
+/// seldom at each look more: the tail is the density over z times what rises with z, so that it halves at least with the density.
+fn normal(look: usize) -> f64 {
+    let first = 3.480_756_404_f64;
+    (first * first + 2.0 * std::f64::consts::LN_2 * look as f64).sqrt()
+}
+
+/// Student's t where the normal number is z, by the expansion in the degrees of freedom (Fisher and Cornish 1960); within a
 /// twentieth from four on.
-fn student(freedom: f64) -> f64 {
-    let (z, n) = (3.290_526_731_f64, freedom.max(1.0));
+fn student(z: f64, freedom: f64) -> f64 {
+    let n = freedom.max(1.0);
     let [z3, z5, z7] = [3, 5, 7].map(|power| z.powi(power));
     let terms = [
         (z3 + z) / 4.0,
@@ -142,12 +152,13 @@ impl Integral {
             self.cut();
             self.look(0, integrand);
         }
-        self.total(0).bar(0)
+        self.total(0).bar(0, 0)
     }
 
-    /// Goes on until every bar is within a share of the first integral, or lines are spent.
-    pub fn refine(&mut self, share: f64, integrand: &impl Integrand) -> Found {
-        let near = |sums: &Sums, share: f64| (0..WIDTH).all(|k| sums.bar(k) <= share * sums.values[0].abs());
+    /// Goes on until every bar is within a share of the first integral, or lines are spent; bars of the look of this number.
+    pub fn refine(&mut self, look: usize, share: f64, integrand: &impl Integrand) -> Found {
+        let near =
+            |sums: &Sums, share: f64| (0..WIDTH).all(|k| sums.bar(k, look) <= share * sums.values[0].abs());
         loop {
             self.look(0, integrand);
             let first = self.total(0);
@@ -158,16 +169,19 @@ impl Integral {
                 if near(&second, share) || is_last || !self.can_cut() {
                     self.most = if is_last || !self.can_cut() { self.lines } else { self.most };
                     let apart = |k: usize| (second.values[k] - first.values[k]).abs();
-                    let bars = std::array::from_fn(|k| second.bar(k).max(apart(k)));
+                    let bars = std::array::from_fn(|k| second.bar(k, look).max(apart(k)));
                     return Found { values: second.values, bars };
                 }
-                self.cut();
-                self.cells.iter_mut().for_each(|cell| cell.found[1] = None);
-                self.drawn += 1;
-            } else {
-                self.cut();
             }
+            self.cut();
+            self.forget_second();
         }
+    }
+
+    /// What cuts depend on is told no more.
+    fn forget_second(&mut self) {
+        self.cells.iter_mut().for_each(|cell| cell.found[1] = None);
+        self.drawn += 1;
     }
 
     /// Cells that no lines of a set were cast in.

@@ -5,7 +5,11 @@
 //! climbs (Nelder and Mead 1965): it stretches along ridges, where what only divides stops short of the corner, and needs no
 //! slopes, which a corner has not. It begins anew where it stopped, turned, until that gains nothing. A box found so is not one
 //! around the solid but one that it reaches: the bar says what may be missing, and holds where no peak is missed that is narrower
-//! than the first lines are apart in the box of its leaf.
+//! than the first lines are apart in the box of its leaf. Where the box around it is proved to be tight the true side lies between
+//! that and the one reached, and the bar is what these are apart.
+//!
+//! Sheets are met, not passed through: their ends are the crossings. One that lies along an axis is met by no line along it, and
+//! keeps the side of its box there.
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -26,24 +30,32 @@ const STEPS: usize = 150;
 const CLIMBS: usize = 24;
 const IDLE: usize = 2;
 
-/// The box that a world's solids reach within one that holds them, and a bar for its sides; `None` where no line is inside.
-pub fn reached(world: &World, around: &Aabb) -> Option<(Aabb, f64)> {
+/// The box that a world reaches within one that holds it, and a bar for its sides; `None` where no line meets it. `is_tight` says
+/// that its own sides are meant to be those of the box around it, which is certain.
+pub fn reached(world: &World, around: &Aabb, is_tight: bool) -> Option<(Aabb, f64)> {
     let grain = tolerance::cleanup(around.farthest());
-    let (mut found, mut bar) = (*around, 0.0f64);
+    let (mut found, mut bar, mut is_met) = (*around, 0.0f64, false);
+    let sheets = world.open().iter().map(|sheet| sheet.bounds.intersection(*around));
+    let boxes: Vec<Aabb> = world.solids().reaches().iter().copied().chain(sheets).collect();
     for axis in 0..3 {
-        let (_, cells) = Planes::new(around, world.solids().reaches(), &[axis], grain);
+        let (_, cells) = Planes::new(around, &boxes, &[axis], grain);
         let first = look(world, around, cells);
         for (side, sign) in [(&mut found.min, -1.0), (&mut found.max, 1.0)] {
-            let (end, err) = Search { world, around, axis, sign, grain }.farthest(&first)?;
+            let Some((end, err)) = (Search { world, around, axis, sign, grain }).farthest(&first) else {
+                continue;
+            };
+            is_met = true;
             let missing = (side[axis] - end).abs();
-            // What is all but reached is.
-            if err + grain < missing {
+            if is_tight {
+                bar = bar.max(missing);
+            } else if err + grain < missing {
+                // What is all but reached is.
                 side[axis] = end;
                 bar = bar.max(err + grain);
             }
         }
     }
-    Some((found, bar))
+    is_met.then_some((found, bar))
 }
 
 /// Where the lines through a rectangle are inside first and last; empty where none is.
@@ -55,8 +67,18 @@ fn ends(world: &World, around: &Aabb, axis: usize, place: DVec2, lent: &mut (Scr
     let ray = line(around, axis, place.to_array());
     spans.clear();
     world.spans(&ray, Interval::ALL, scratch, spans);
-    let (Some(first), Some(last)) = (spans.first(), spans.last()) else { return Interval::EMPTY };
-    Interval::new(ray.at(first.interval().lo)[axis], ray.at(last.interval().hi)[axis])
+    let mut found = match (spans.first(), spans.last()) {
+        (Some(first), Some(last)) => Interval::new(first.interval().lo, last.interval().hi),
+        _ => Interval::EMPTY,
+    };
+    if !world.open().is_empty() {
+        let mut hits = Vec::new();
+        world.sheets(&ray, Interval::ALL, scratch, &mut hits);
+        for hit in hits {
+            found = Interval::new(found.lo.min(hit.boundary.t), found.hi.max(hit.boundary.t));
+        }
+    }
+    if found.is_empty() { found } else { Interval::new(ray.at(found.lo)[axis], ray.at(found.hi)[axis]) }
 }
 
 fn look(world: &World, around: &Aabb, rects: Vec<Rect>) -> Vec<Ends> {

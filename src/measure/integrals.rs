@@ -6,11 +6,11 @@
 //! the crossings of the line. It falls to zero at the outlines of a round shape, where a line sees much of it; a face along the
 //! axis adds nothing, and none of the lines does.
 //!
-//! The cells begin with the boxes in which leaves matter, so that every leaf is looked at by lines of its own. A leaf of which
-//! nothing is seen by the first lines through its box is missed: pieces of one shape that are much smaller than all of it, such
-//! as an implicit may have.
+//! The cells begin with the boxes in which leaves matter, so that every leaf is looked at by lines of its own. A formula or a scan of
+//! which a grid of lines through its box sees nothing may be anything in it: its box is added to the bar. Where something is seen, other
+//! pieces of it that are much smaller may still be missed.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 use super::adaptive::{Found, Integral, Integrand, WIDTH};
 use crate::csg::{Leaf, Object, Scratch, Spans};
@@ -24,13 +24,14 @@ const MOST: [u64; 3] = [1 << 21, 1 << 20, 1 << 17];
 
 /// What bars of volumes shall be at first, relative to the value, by the same: a twentieth of what is commonly allowed.
 const ENOUGH: [f64; 3] = [5e-5, 5e-5, 2e-4];
-/// Areas may have bars by so much wider: every edge that a line sees is one to it, along three axes.
-const WIDER: f64 = 10.0;
-/// Rounds after which an axis is chosen, and leaves up to which that is worth the lines.
-const PILOT: u32 = 2;
-const MANY: usize = 1000;
 /// And by which factor less each time that more is asked for.
 const FINER: f64 = 0.25;
+/// Areas may have bars by so much wider: every edge that a line sees is one to it, along three axes.
+const WIDER: f64 = 10.0;
+/// Rounds of lines after which an axis is chosen.
+const PILOT: u32 = 2;
+/// Leaves up to which choosing is worth the lines.
+const MANY: usize = 1000;
 
 /// Something measured over lines, at one accuracy after the other; what is told of one does not depend on which were asked for
 /// before.
@@ -41,6 +42,8 @@ pub struct Lines {
     enough: f64,
     /// How far faces may be off, world length.
     shift: f64,
+    /// Boxes of leaves that may matter in them, and that no line was seen to meet.
+    unmet: Vec<Aabb>,
     told: Vec<Found>,
 }
 
@@ -83,14 +86,21 @@ impl Lines {
         let cost = cost(world) as usize;
         let shift = leaves().map(shift).fold(tolerance::cleanup(bounds.farthest()), f64::max);
         let integral = Integral::new(bounds, &boxes, axes, MOST[cost]);
-        Lines { bounds: *bounds, integral, enough: ENOUGH[cost], shift, told: Vec::new() }
+        Lines {
+            bounds: *bounds,
+            integral,
+            enough: ENOUGH[cost],
+            shift,
+            unmet: unmet(world),
+            told: Vec::new(),
+        }
     }
 
     /// What is known at an accuracy, and whether the next is finer.
     fn told(&mut self, level: usize, integrand: &impl Integrand) -> (Found, bool) {
         while self.told.len() <= level && (self.told.is_empty() || !self.integral.is_spent()) {
             let share = self.enough * FINER.powi(self.told.len() as i32);
-            let found = self.integral.refine(share, integrand);
+            let found = self.integral.refine(self.told.len(), share, integrand);
             self.told.push(found);
         }
         let last = self.told.len() - 1;
@@ -103,7 +113,8 @@ impl Lines {
         let half = 0.5 * bounds.size();
         let (found, is_open) = self.told(level, &Lengths { world, bounds });
         let Found { values: [value, moments @ ..], bars } = found;
-        let err = bars[0] + self.rounding();
+        let unmet: f64 = self.unmet.iter().map(|b| b.size().element_product()).sum();
+        let err = bars[0] + self.rounding() + unmet;
         let volume =
             Measured { value, err, size: self.size(value, bounds.size().element_product()), is_open };
         if value <= 0.0 {
@@ -119,16 +130,15 @@ impl Lines {
         let (found, is_open) = self.told(level, &Faces { world, bounds: self.bounds });
         let (value, err) = (found.values[0], found.bars[0]);
         let size = self.bounds.size();
-        let around = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
         // A face that is moved changes its neighbours along its rim.
-        let err = err + 8.0 * self.shift * size.element_sum();
-        Measured { value, err, size: self.size(value, around), is_open }
+        let unmet: f64 = self.unmet.iter().map(Aabb::surface).sum();
+        let err = err + 8.0 * self.shift * size.element_sum() + unmet;
+        Measured { value, err, size: self.size(value, self.bounds.surface()), is_open }
     }
 
     /// What faces that are off add to the volume, by all that the box shows of them.
     fn rounding(&self) -> f64 {
-        let size = self.bounds.size();
-        2.0 * self.shift * (size.x * size.y + size.y * size.z + size.z * size.x)
+        self.shift * self.bounds.surface()
     }
 
     /// What a bar is held against: the value, and where there is none what it would be of the whole box.
@@ -145,6 +155,46 @@ fn cost(world: &World) -> Cost {
 
 fn shift(leaf: &Leaf) -> f64 {
     leaf.solid.shift_bound() * leaf.place.stretch + tolerance::cleanup(leaf.scale())
+}
+
+/// Lines along each axis, a square of so many, that look for a leaf in its box.
+const GRID: usize = 16;
+
+/// The boxes in which formulas and scans may matter and no line of a grid meets them; closed forms fill their boxes.
+fn unmet(world: &World) -> Vec<Aabb> {
+    let solids = world.solids();
+    let boxes = solids.leaves().iter().zip(solids.reaches());
+    let heavy = boxes.filter(|(leaf, reach)| {
+        let may_be = !leaf.solid.extent_under(&DAffine3::IDENTITY).is_empty();
+        leaf.solid.cost() == Cost::Heavy && may_be && reach.is_finite() && 0.0 < reach.size().min_element()
+    });
+    heavy.filter(|(leaf, reach)| !is_met(leaf, reach)).map(|(_, reach)| *reach).collect()
+}
+
+/// Whether a line of the grid over a box crosses a leaf in the box, or is inside of it there.
+fn is_met(leaf: &Leaf, reach: &Aabb) -> bool {
+    let (mut scratch, mut found) = (Scratch::default(), Vec::new());
+    let share = |i: usize| (i as f64 + 0.5) / GRID as f64 - 0.5;
+    (0..3 * GRID * GRID).any(|k| {
+        let (axis, i, j) = (k % 3, k / 3 / GRID, k / 3 % GRID);
+        let place = [(share(i), (axis + 1) % 3), (share(j), (axis + 2) % 3)]
+            .map(|(share, across)| reach.center()[across] + share * reach.size()[across]);
+        let ray = line(reach, axis, place);
+        let (local, half) = (leaf.place.ray_to_local(&ray), 0.5 * reach.size()[axis]);
+        let mut lo = -half;
+        while lo < half {
+            found.clear();
+            let answer = leaf.crossings(&local, Interval::new(lo, half), &mut scratch.solid, &mut found);
+            if answer.inside || found.iter().any(|crossing| crossing.t.abs() <= half) {
+                return true;
+            }
+            if answer.range.hi <= lo {
+                break;
+            }
+            lo = answer.range.hi;
+        }
+        false
+    })
 }
 
 /// A box that holds all of an object that has an end.

@@ -8,6 +8,7 @@
 mod adaptive;
 mod alike;
 mod cells;
+mod exact;
 mod extent;
 mod integrals;
 
@@ -24,7 +25,7 @@ use crate::diag::Diagnostic;
 use crate::geom::{Aabb, Interval, Ray};
 use crate::lang::{Answer, Asked, Extent, Geometry, Measured, RayHit};
 use crate::prepare::{self, Options, Prepared};
-use crate::scene::{BooleanOp, Draw, Scene, Shape, ShapeKind, ShapeNode};
+use crate::scene::{BooleanOp, Draw, Scene, Shape, ShapeKind, ShapeNode, Value};
 use crate::shot::{Hit, World};
 use crate::solid::table::{self, Build};
 use integrals::Lines;
@@ -43,8 +44,7 @@ pub struct Measuring {
 #[derive(Debug)]
 struct Known {
     prepared: Prepared,
-    /// Whether its box may be larger than it: something was taken away.
-    is_cut: bool,
+    fills: Fills,
     volume: RefCell<Option<Lines>>,
     area: RefCell<Option<Lines>>,
     empty: RefCell<Option<bool>>,
@@ -73,7 +73,7 @@ impl Measuring {
         let alike = likeness.as_ref().and_then(|text| self.alike.borrow().get(text).cloned());
         let known = match alike {
             Some(known) => known,
-            None => Rc::new(Known::new(prepare::prepare(&scene, &self.options)?, is_cut(asked.shape))),
+            None => Rc::new(Known::new(prepare::prepare(&scene, &self.options)?, Fills::of(asked.shape))),
         };
         self.alike.borrow_mut().extend(likeness.map(|text| (text, known.clone())));
         self.known.borrow_mut().insert(key, (asked.shape.clone(), known.clone()));
@@ -117,6 +117,44 @@ impl Measuring {
     }
 }
 
+/// How a shape fills the box of what it is made of.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Fills {
+    /// It reaches all sides, by what its parts know of themselves.
+    Wholly,
+    /// The sides are proved to be around it, and as near as that goes: a formula in a box.
+    Nearly,
+    /// It may end anywhere in it: something was taken away.
+    Partly,
+}
+
+impl Fills {
+    fn of(shape: &Shape) -> Fills {
+        let mut shape = shape;
+        while let ShapeKind::Transform { child, .. }
+        | ShapeKind::With { child, .. }
+        | ShapeKind::Fit { child, .. } = &shape.0.kind
+        {
+            shape = child;
+        }
+        if let Some(bounding) = bounding(shape) {
+            let is_box = matches!(&bounding.0.kind, ShapeKind::Leaf { call, .. } if call.word == "box");
+            return if is_box { Fills::Nearly } else { Fills::Partly };
+        }
+        if is_cut(shape) { Fills::Partly } else { Fills::Wholly }
+    }
+}
+
+/// The solid that bounds a formula.
+fn bounding(shape: &Shape) -> Option<&Shape> {
+    let ShapeKind::Leaf { call, .. } = &shape.0.kind else { return None };
+    let Build::Bounded { by, .. } = table::find(&call.word)?.build else { return None };
+    match call.get(by)? {
+        Value::Shape(shape) => Some(shape),
+        _ => None,
+    }
+}
+
 /// Whether anything is taken away in a shape, so that it may not reach the box of what it is made of.
 fn is_cut(shape: &Shape) -> bool {
     let (mut open, mut seen) = (vec![shape], HashSet::new());
@@ -126,11 +164,8 @@ fn is_cut(shape: &Shape) -> bool {
         }
         match &shape.0.kind {
             ShapeKind::Boolean { op, .. } if *op != BooleanOp::Union => return true,
-            ShapeKind::Leaf { call, .. }
-                if table::find(&call.word).is_some_and(|row| matches!(row.build, Build::Bounded { .. })) =>
-            {
-                return true;
-            }
+            ShapeKind::Clip { .. } => return true,
+            ShapeKind::Leaf { .. } if bounding(shape).is_some() => return true,
             kind => open.extend(kind.children()),
         }
     }
@@ -138,9 +173,9 @@ fn is_cut(shape: &Shape) -> bool {
 }
 
 impl Known {
-    fn new(prepared: Prepared, is_cut: bool) -> Known {
+    fn new(prepared: Prepared, fills: Fills) -> Known {
         let (volume, area) = (RefCell::default(), RefCell::default());
-        Known { prepared, is_cut, volume, area, empty: RefCell::default(), reached: RefCell::default() }
+        Known { prepared, fills, volume, area, empty: RefCell::default(), reached: RefCell::default() }
     }
 
     fn world(&self) -> &World {
@@ -149,9 +184,7 @@ impl Known {
 
     /// A box around all of it, unbounded where it is.
     fn extent(&self) -> Aabb {
-        let parts = self.prepared.outline.parts.iter().map(|part| part.bounds);
-        let sheets = self.world().open().iter().map(|sheet| sheet.bounds);
-        parts.chain(sheets).fold(Aabb::EMPTY, Aabb::union)
+        self.prepared.outline.extent
     }
 
     /// A box that no crossing is out of: that of a scan's surface, not of its samples.
@@ -163,27 +196,35 @@ impl Known {
     /// The box that it reaches.
     fn reached(&self) -> Extent {
         let around = self.extent();
-        let is_asked =
-            self.is_cut && !around.is_empty() && around.is_finite() && self.world().open().is_empty();
-        if !is_asked {
+        let is_flat = around.size().min_element() == 0.0;
+        if self.fills == Fills::Wholly || around.is_empty() || !around.is_finite() || is_flat {
             return Extent { bounds: around, err: 0.0 };
         }
-        *self.reached.borrow_mut().get_or_insert_with(|| match extent::reached(self.world(), &around) {
-            Some((bounds, err)) => Extent { bounds, err },
-            None if self.is_empty() => Extent { bounds: Aabb::EMPTY, err: 0.0 },
-            None => Extent { bounds: around, err: around.size().max_element() },
+        let is_tight = self.fills == Fills::Nearly;
+        *self.reached.borrow_mut().get_or_insert_with(|| {
+            match extent::reached(self.world(), &around, is_tight) {
+                Some((bounds, err)) => Extent { bounds, err },
+                None if self.is_nothing() => Extent { bounds: Aabb::EMPTY, err: 0.0 },
+                None => Extent { bounds: around, err: around.size().max_element() },
+            }
         })
     }
 
-    fn is_empty(&self) -> bool {
+    /// Whether no line meets it.
+    fn is_nothing(&self) -> bool {
         let Prepared { shot, outline, .. } = &self.prepared;
-        if !shot.world.open().is_empty() {
-            return false;
+        let solids = || Evidence::gather(shot.world.solids(), outline, &[], 0.0).is_nothing();
+        *self.empty.borrow_mut().get_or_insert_with(|| self.sheets_are_missed() && solids())
+    }
+
+    /// Whether what is left of sheets that were clipped is met by no line along the axes; others are something.
+    fn sheets_are_missed(&self) -> bool {
+        let (sheets, around) = (self.world().open(), self.extent());
+        if sheets.is_empty() || around.is_empty() {
+            return true;
         }
-        *self
-            .empty
-            .borrow_mut()
-            .get_or_insert_with(|| Evidence::gather(shot.world.solids(), outline, &[], 0.0).is_nothing())
+        let bounded = around.is_finite() && self.fills == Fills::Partly;
+        bounded && extent::reached(self.world(), &around, false).is_none()
     }
 }
 
@@ -197,7 +238,7 @@ impl Geometry for Measuring {
     }
 
     fn is_empty(&self, asked: &Asked) -> Answer<bool> {
-        Ok(self.known(asked)?.is_empty())
+        Ok(self.known(asked)?.is_nothing())
     }
 
     fn inside(&self, asked: &Asked, point: DVec3) -> Answer<bool> {
@@ -210,11 +251,17 @@ impl Geometry for Measuring {
     }
 
     fn volume(&self, asked: &Asked) -> Answer<Measured> {
+        if let Some(exact) = self.known(asked)?.exact() {
+            return Ok(exact.volume);
+        }
         self.integrals(asked).map(|(volume, _, _)| volume)
     }
 
     fn area(&self, asked: &Asked) -> Answer<Measured> {
         let known = self.known(asked)?;
+        if let Some(area) = known.exact().and_then(|exact| exact.area) {
+            return Ok(area);
+        }
         let bounds = known.domain(&self.bounded(asked, &known, "area")?);
         if bounds.is_empty() {
             return Ok(Measured::default());

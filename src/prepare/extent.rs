@@ -29,7 +29,9 @@ impl Lowering<'_, '_> {
             ShapeKind::Leaf { call, .. } => {
                 let solid = self.any_solid(shape)?;
                 match bounded_by(call) {
-                    Some((_, bounding)) => self.extent(bounding, to_from),
+                    Some((_, bounding)) => {
+                        Ok(self.extent(bounding, to_from)?.intersection(solid.extent_under(to_from)))
+                    }
                     None if solid.bounds().is_finite() => Ok(solid.extent_under(to_from)),
                     None => Ok(solid.limits()[0].transformed_sides(to_from)),
                 }

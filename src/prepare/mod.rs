@@ -227,7 +227,7 @@ fn world(
     let mut errors = Vec::new();
     let mut solids = Vec::new();
     let mut places = Vec::new();
-    let mut bounds = Aabb::EMPTY;
+    let (mut bounds, mut extent) = (Aabb::EMPTY, Aabb::EMPTY);
     let mut owners = Owners::default();
     for (number, draw) in (1..).zip(draws) {
         let first = lowering.leaves.len() as u32;
@@ -239,6 +239,7 @@ fn world(
                     solids.push(expr);
                     places.push((draw.at, first..lowering.leaves.len() as u32, drawn.bounds));
                 }
+                extent = extent.union(drawn.bounds);
                 if drawn.bounds.is_finite() {
                     bounds = bounds.union(drawn.bounds);
                 }
@@ -250,6 +251,7 @@ fn world(
         return Err(errors);
     }
     let Lowering { leaves, sheets, mut outline, repeats, .. } = lowering;
+    outline.extent = extent;
     // What turned out to stand once is not shared.
     drop(repeats);
     let mut whole = Expr::Or(solids);

@@ -11,6 +11,8 @@ use crate::source::Span;
 /// The places of a world's solids.
 #[derive(Clone, Debug, Default)]
 pub struct Outline {
+    /// A box around all that is drawn, as `.fit` takes it; unbounded where anything is.
+    pub extent: Aabb,
     /// The solids drawn, in the order written; their union is the world's object.
     pub parts: Vec<Part>,
     /// Whatever takes something away, the outer before the inner.

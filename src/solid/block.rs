@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::rounded_box::RoundedBox;
 use super::table::{Build, Primitive};
-use super::{Chord, Cost, Crossing, Scratch, Solid};
+use super::{Chord, Cost, Crossing, Exact, Scratch, Solid};
 use crate::geom::lean::is_between;
 use crate::geom::{Aabb, Lean, Ray};
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param, Value};
@@ -125,6 +125,10 @@ impl Solid for Block {
         } else {
             return Err("what lies near an unbounded box has rounded edges");
         }))
+    }
+
+    fn exact(&self) -> Option<Exact> {
+        Exact::new(self.0.size().element_product(), self.0.surface())
     }
 
     fn cost(&self) -> Cost {

@@ -1,11 +1,12 @@
 //! Capsules: all points nearer to a segment than a radius.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::table::{Build, Primitive};
-use super::{Answer, Crossing, Scratch, Solid};
+use super::{Answer, Crossing, Exact, Scratch, Solid};
 use crate::geom::{Aabb, Interval, Ray};
 use crate::num::roots::ball;
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};
@@ -114,6 +115,11 @@ const MARGIN: f64 = 1.0 / 64.0;
 impl Solid for Capsule {
     fn bounds(&self) -> Aabb {
         self.extent(&DAffine3::IDENTITY)
+    }
+
+    fn exact(&self) -> Option<Exact> {
+        let (r, h) = (self.radius, 2.0 * self.half);
+        Exact::new(PI * r * r * (h + 4.0 / 3.0 * r), 2.0 * PI * r * (h + 2.0 * r))
     }
 
     fn extent_under(&self, to_from: &DAffine3) -> Aabb {

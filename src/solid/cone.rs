@@ -1,12 +1,13 @@
 //! Cones and their frusta.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec2, DVec3};
 
 use super::shaft::{Shaft, within};
 use super::table::{Build, Primitive};
-use super::{Chord, Cost, Crossing, Scratch, Solid};
+use super::{Chord, Cost, Crossing, Exact, Scratch, Solid};
 use crate::geom::{Aabb, Lean, Ray};
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};
 
@@ -151,6 +152,12 @@ impl Solid for Cone {
         }
         let (from, axis) = (self.shaft.from, self.shaft.axis());
         Ok(Some(Arc::new(Cone::new(radii, from + lo * axis, from + hi * axis))))
+    }
+
+    fn exact(&self) -> Option<Exact> {
+        let ([a, b], h) = (self.radii, self.shaft.height);
+        let wall = PI * (a + b) * h.hypot(a - b);
+        Exact::new(PI / 3.0 * h * (a * a + a * b + b * b), PI * (a * a + b * b) + wall)
     }
 
     fn cost(&self) -> Cost {

@@ -1,12 +1,13 @@
 //! Cylinders.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec2, DVec3};
 
 use super::shaft::{Shaft, within};
 use super::table::{Build, Primitive};
-use super::{Chord, Cost, Crossing, Scratch, Solid};
+use super::{Chord, Cost, Crossing, Exact, Scratch, Solid};
 use crate::geom::{Aabb, Lean, Ray};
 use crate::num::roots;
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};
@@ -97,6 +98,11 @@ impl Solid for Cylinder {
         let left = 0.0 < self.radius + by && 0.0 < height + 2.0 * by;
         let (from, to) = (from - by * self.shaft.axis(), to + by * self.shaft.axis());
         Ok(left.then(|| Arc::new(Cylinder::new(self.radius + by, from, to)) as Arc<dyn Solid>))
+    }
+
+    fn exact(&self) -> Option<Exact> {
+        let (r, h) = (self.radius, self.shaft.height);
+        Exact::new(PI * r * r * h, 2.0 * PI * r * (r + h))
     }
 
     fn cost(&self) -> Cost {

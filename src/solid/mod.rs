@@ -60,6 +60,21 @@ pub enum Cost {
     Heavy,
 }
 
+/// What a solid measures in closed form, own units.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Exact {
+    /// The volume.
+    pub volume: f64,
+    /// The area of the boundary, where that is a closed form too.
+    pub area: Option<f64>,
+}
+
+impl Exact {
+    fn new(volume: f64, area: f64) -> Option<Exact> {
+        Some(Exact { volume, area: Some(area) })
+    }
+}
+
 /// What to say of a sheet of which no more is known.
 pub const SHEET: &str = "a Sheet: an open surface";
 
@@ -116,6 +131,11 @@ pub trait Solid: Send + Sync + Debug {
     /// The bound that [`Crossing::shift`] keeps, length of the solid's own frame.
     fn shift_bound(&self) -> f64 {
         0.0
+    }
+
+    /// Its volume and area, where they are closed forms.
+    fn exact(&self) -> Option<Exact> {
+        None
     }
 
     /// A length of the solid's own frame below which its boundary is not resolved: a ray that leaves the boundary and

@@ -1,11 +1,12 @@
 //! Spheres and ellipsoids.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
 use super::table::{Build, Primitive};
-use super::{Chord, Cost, Crossing, Scratch, Solid};
+use super::{Chord, Cost, Crossing, Exact, Scratch, Solid};
 use crate::geom::{Aabb, Lean, Ray};
 use crate::num::roots;
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param, Value};
@@ -81,6 +82,12 @@ impl Solid for Sphere {
         let radii = self.radii + by;
         let left = 0.0 < self.radii.x && 0.0 < radii.x;
         Ok(left.then(|| Arc::new(Sphere { center: self.center, radii }) as Arc<dyn Solid>))
+    }
+
+    fn exact(&self) -> Option<Exact> {
+        let DVec3 { x, y, z } = self.radii;
+        let area = (x == y && y == z).then_some(4.0 * PI * x * x);
+        Some(Exact { volume: 4.0 / 3.0 * PI * x * y * z, area })
     }
 
     fn cost(&self) -> Cost {

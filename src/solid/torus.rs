@@ -1,11 +1,12 @@
 //! Tori.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
 use super::table::{Build, Primitive};
-use super::{Answer, Crossing, Scratch, Solid};
+use super::{Answer, Crossing, Exact, Scratch, Solid};
 use crate::geom::{Aabb, Interval, Ray, tolerance};
 use crate::num::convex::{Bend, Knot, roots};
 use crate::num::roots::cube_root;
@@ -162,6 +163,13 @@ impl Line {
 impl Solid for Torus {
     fn bounds(&self) -> Aabb {
         self.extent_under(&DAffine3::IDENTITY)
+    }
+
+    /// Pappus and Guldin, of the ring; a spindle is none.
+    fn exact(&self) -> Option<Exact> {
+        let (major, minor) = (self.major, self.minor);
+        let (volume, area) = (2.0 * PI * PI * major * minor * minor, 4.0 * PI * PI * major * minor);
+        if minor <= major { Exact::new(volume, area) } else { None }
     }
 
     fn extent_under(&self, to_from: &DAffine3) -> Aabb {

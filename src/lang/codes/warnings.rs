@@ -119,6 +119,15 @@ pub const CODES: &[Code] = &[
         ],
     ),
     code(
+        "W0128",
+        "A comparison is closer than what was measured tells.",
+        "It is taken to be what the numbers say, which may be wrong; compare with room for the bar of error.",
+        [
+            "let v = volume(sphere(r: 1) | sphere(r: 1, at: [1, 0, 0]))\nprint v == 9 * pi / 4",
+            "let v = volume(sphere(r: 1) | sphere(r: 1, at: [1, 0, 0]))\nprint v < 9 * pi / 4 + 0.01",
+        ],
+    ),
+    code(
         "W0201",
         "A name hides what the language calls so.",
         "Take another name.",

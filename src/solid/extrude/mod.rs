@@ -1,5 +1,6 @@
 //! Extrusions: an outline carried up along z, perhaps turned and scaled on the way.
 
+mod extent;
 mod flat;
 mod turned;
 
@@ -11,7 +12,7 @@ use super::outline::Outline;
 use super::table::{Build, Primitive};
 use super::{Answer, Crossing, Scratch, Solid, parity};
 use crate::geom::lean::is_between;
-use crate::geom::{Aabb, Interval, Lean, Ray};
+use crate::geom::{Aabb, Interval, Lean, Ray, tolerance};
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param, Value};
 
 /// The line of the table.
@@ -108,6 +109,10 @@ impl Extrusion {
         let (height, k, w) = if flat { (0.0, DVec2::ZERO, 0.0) } else { (height, k, w) };
         let mut made = Extrusion { outline, height, k, w, bounds: Aabb::EMPTY };
         made.bounds = if flat { Aabb::of_points([DVec3::ZERO]) } else { made.box_under(&DAffine3::IDENTITY) };
+        if made.w != 0.0 {
+            // Turned walls are found to roundings.
+            made.bounds = made.bounds.inflated(tolerance::noise(made.bounds.farthest()));
+        }
         made
     }
 
@@ -130,33 +135,6 @@ impl Extrusion {
     fn contains(&self, p: DVec3) -> bool {
         let frame = self.frame(p);
         0.0 < frame.m.min_element() && self.outline.contains(frame.xy / frame.m)
-    }
-
-    /// A box around the image: of both ends where walls are straight, else of so many pieces of every corner's path
-    /// that the arc rises over its chord by less than a thousandth of the radius; by how much it can is added.
-    fn box_under(&self, to_from: &DAffine3) -> Aabb {
-        let pieces = (64.0 * self.w.abs() * self.height / std::f64::consts::TAU).ceil();
-        let step = self.height / pieces.max(1.0);
-        let mut all = Aabb::EMPTY;
-        for [corner, _] in self.outline.edges() {
-            for i in 0..=pieces.max(1.0) as u32 {
-                let z = step * f64::from(i);
-                let q = DVec2::from_angle(self.w * z).rotate(*corner * (1.0 - self.k * z).max(DVec2::ZERO));
-                all = all.including(to_from.transform_point3(q.extend(z)));
-            }
-        }
-        // f lies within step^2 / 8 max |f''| of its chord; f'' of R(w z) (1 - k z) q.
-        let reach = self.outline.edges().iter().map(|e| e[0].length()).fold(0.0, f64::max);
-        let largest = (1.0 - self.k * self.height).max_element().max(1.0);
-        let bend = self.w * self.w * largest + 2.0 * self.w.abs() * self.k.abs().max_element();
-        let rise = 0.125 * step * step * bend * reach;
-        let rows = to_from.matrix3.transpose();
-        let across = DVec3::new(
-            rows.x_axis.truncate().length(),
-            rows.y_axis.truncate().length(),
-            rows.z_axis.truncate().length(),
-        );
-        Aabb { min: all.min - rise * across, max: all.max + rise * across }
     }
 
     /// The part of a ray between the two ends, and which it meets first; `None` where it passes by. A ray across z in

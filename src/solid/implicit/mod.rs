@@ -4,6 +4,7 @@
 //! of the ray that is asked about. The solid ends where the box around
 //! the bounding shape ends; that it ends at the shape itself is left to set algebra.
 
+mod hull;
 mod jumps;
 mod roots;
 mod stretches;
@@ -11,7 +12,7 @@ mod tape;
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::block::Block;
 use super::table::{Build, Primitive};
@@ -56,9 +57,9 @@ fn build(call: &Call, bounds: &Aabb) -> Result<Arc<dyn Solid>, BuildError> {
 #[derive(Clone, Debug)]
 pub struct Implicit {
     formula: Arc<Formula>,
-    /// The box around what bounds it.
-    asked: Aabb,
-    /// The box in which it is traced: a little larger, see [`tolerance::MARGIN`].
+    /// What the formula leaves of the box around what bounds it.
+    hull: Aabb,
+    /// The box in which it is traced: see [`traced`].
     traced: Aabb,
 }
 
@@ -68,12 +69,32 @@ const SURFACE: u32 = 6;
 impl Implicit {
     /// A formula within a box; nothing where the box is empty or unbounded.
     pub fn new(formula: Arc<Formula>, bounds: Aabb) -> Implicit {
-        let traced = match bounds.is_finite() && !bounds.is_empty() {
-            true => bounds.inflated(tolerance::MARGIN * bounds.size().max_element()),
-            false => Aabb::EMPTY,
-        };
-        Implicit { formula, asked: bounds, traced }
+        let bounded = bounds.is_finite() && !bounds.is_empty();
+        let hull = if bounded { hull::hull(&formula, &bounds, &DAffine3::IDENTITY) } else { Aabb::EMPTY };
+        let traced = if bounded { traced(&hull, &bounds) } else { Aabb::EMPTY };
+        Implicit { formula, hull, traced }
     }
+}
+
+/// How much smaller than the box asked a hull is, along two axes, before it is traced in a box of its own: what is flat is met by lines
+/// across it.
+const SMALL: f64 = 0.25;
+
+/// The box asked, or where the hull is small in it one around that; by [`tolerance::MARGIN`] larger. Corners of the latter are
+/// multiples of a power of two some hundredths of its size: so the middle of a ray's part has few digits, and is by symmetry what it
+/// seems, so that how the formula rounds there does not follow from how far the hull was proved.
+fn traced(hull: &Aabb, asked: &Aabb) -> Aabb {
+    let whole = asked.inflated(tolerance::MARGIN * asked.size().max_element());
+    let size = hull.size().max_element();
+    let unit = f64::from_bits(size.max(0.0).to_bits() >> 52 << 52) / 64.0;
+    let mut shares = (hull.size() / asked.size()).to_array();
+    shares.sort_by(f64::total_cmp);
+    if hull.is_empty() || unit <= 0.0 || SMALL <= shares[1] {
+        return whole;
+    }
+    let hull = hull.inflated(tolerance::MARGIN * size);
+    let own = Aabb { min: (hull.min / unit).floor() * unit, max: (hull.max / unit).ceil() * unit };
+    if own.is_finite() { own.intersection(whole) } else { whole }
 }
 
 impl Solid for Implicit {
@@ -82,7 +103,15 @@ impl Solid for Implicit {
     }
 
     fn extent_under(&self, to_from: &DAffine3) -> Aabb {
-        self.asked.transformed(to_from)
+        let image = self.hull.transformed(to_from);
+        let DMat3 { x_axis, y_axis, z_axis } = to_from.matrix3;
+        let turned = to_from.matrix3 != DMat3::from_diagonal(DVec3::new(x_axis.x, y_axis.y, z_axis.z));
+        if self.hull.is_empty() || !turned {
+            return image;
+        }
+        // The way back is the inverse to roundings.
+        let own = hull::hull(&self.formula, &self.hull, to_from);
+        own.inflated(tolerance::noise(image.farthest())).intersection(image)
     }
 
     /// Stretches of the ray's part in the box, from where the range begins until one with a crossing is done: see

@@ -174,6 +174,16 @@ fn rates_of_two(op: Two, a: f64, b: f64, x: f64) -> (f64, f64) {
 
 /// The values of a formula at the points of a box, each coordinate in an enclosure.
 pub(super) fn enclose(steps: &[Step], p: &[Enclosure; 3], room: &mut Room) -> Enclosure {
+    enclose_within(steps, p, &[], room)
+}
+
+/// The same where it is known already what the values of steps lie in: of the first, one for each.
+pub(super) fn enclose_within(
+    steps: &[Step],
+    p: &[Enclosure; 3],
+    within: &[Enclosure],
+    room: &mut Room,
+) -> Enclosure {
     let known = &mut room.enclosures;
     known.clear();
     for step in steps {
@@ -185,7 +195,9 @@ pub(super) fn enclose(steps: &[Step], p: &[Enclosure; 3], room: &mut Room) -> En
             Step::Two(op, a, b) => enclose_two(op, at(a), at(b)),
             Step::Power(a, n) => at(a).power(n),
         };
-        known.push(x);
+        let narrowed =
+            within.get(known.len()).map_or(x, |w| Enclosure { lo: x.lo.max(w.lo), hi: x.hi.min(w.hi), ..x });
+        known.push(narrowed);
     }
     known.last().copied().unwrap_or(Enclosure::EMPTY)
 }
