@@ -1,4 +1,5 @@
 //! A client of `pss lsp`, over its pipes as an editor speaks.
+#![allow(dead_code)]
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};

@@ -56,14 +56,16 @@ impl Channels {
     }
 }
 
-/// Reads every channel of a file's first part, whoever wrote it.
+/// Reads every channel of a file's first part, whoever wrote it; one at less than full size is none.
 pub fn read_channels(path: &Path) -> io::Result<Channels> {
     let file = BufReader::new(std::fs::File::open(path)?);
     let reader = exr::image::read::read().no_deep_data().largest_resolution_level();
     let image =
         reader.all_channels().first_valid_layer().all_attributes().from_buffered(file).map_err(io_error)?;
     let part = image.layer_data;
-    let list = part.channel_data.list.iter().map(|channel| Channel {
+    let is_full = |values: &FlatSamples| values.len() == part.size.area();
+    let full = part.channel_data.list.iter().filter(|channel| is_full(&channel.sample_data));
+    let list = full.map(|channel| Channel {
         name: channel.name.to_string(),
         is_whole: matches!(channel.sample_data, FlatSamples::U32(_)),
         values: channel.sample_data.values_as_f32().collect(),
