@@ -96,6 +96,20 @@ impl Aov {
         matches!(self, Aov::Layers | Aov::Thickness | Aov::Wall | Aov::Ties | Aov::Parity)
     }
 
+    /// Whether it counts or numbers something: two of its values are the same or not.
+    pub const fn is_whole(self) -> bool {
+        !matches!(
+            self,
+            Aov::Depth
+                | Aov::Normal
+                | Aov::Position
+                | Aov::Albedo
+                | Aov::Thickness
+                | Aov::Wall
+                | Aov::Variance
+        )
+    }
+
     /// The value of every channel where nothing is.
     pub const fn nothing(self) -> f32 {
         match self {

@@ -36,7 +36,7 @@ impl Channels {
     /// Those that are there, in the order of the names; row by row from the top. A channel at less than full size is none.
     pub fn named(&self, names: &[&str]) -> Vec<&FlatSamples> {
         let whole = |c: &&AnyChannel<FlatSamples>| c.sample_data.len() == self.size[0] * self.size[1];
-        let named = |name: &&str| self.list.iter().filter(whole).find(|c| c.name.to_string() == **name);
+        let named = |name: &&str| self.list.iter().filter(whole).find(|c| c.name.eq(name));
         names.iter().filter_map(named).map(|c| &c.sample_data).collect()
     }
 

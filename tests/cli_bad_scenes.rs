@@ -116,8 +116,8 @@ fn where_there_is_no_memory_to_read_a_scene_that_is_said() {
     folder.write("a.pss", "draw sphere(r: 1)");
     let args = ["render", "a.pss", "-o", "a.png", "--size", "8x8", "--threads", "1"];
     let ran = folder.run_within(256 << 20, &args);
-    assert_eq!(ran.code, 74, "{}", ran.stderr);
-    assert!(ran.stderr.starts_with("error[E0704]"), "{}", ran.stderr);
+    assert_eq!(ran.code, 71, "{}", ran.stderr);
+    assert!(ran.stderr.starts_with("error[E0704]") && ran.stderr.contains("256 MiB"), "{}", ran.stderr);
     assert_eq!(folder.files(), ["a.pss"]);
     assert_eq!(folder.run_within(1 << 30, &args).code, 0);
 }

@@ -96,7 +96,7 @@ fn blessing_again_says_what_changed_and_keeps_the_picture_of_it() {
     let ran = folder.run(&["test", ".", "--bless", "-D", "r=1.01"]);
     assert!(ran.code == 0 && ran.stderr.contains(" rays of .spans, "), "{}", ran.stderr);
     assert!(
-        ran.stderr.contains(" pixels of .exr, ") && ran.stderr.contains(" pixels of .png\n"),
+        ran.stderr.contains(" pixels of .exr, ") && ran.stderr.contains(" pixels of .png, "),
         "{}",
         ran.stderr
     );
@@ -106,16 +106,125 @@ fn blessing_again_says_what_changed_and_keeps_the_picture_of_it() {
 }
 
 #[test]
-fn what_breaks_its_word_is_not_blessed_and_what_gives_none_is_warned_of() {
+fn what_breaks_its_word_or_gives_none_is_not_blessed() {
     let folder = Folder::new();
     folder.write("a.pss", SCENE);
     let ran = folder.run(&["test", ".", "--bless", "-D", "r=2"]);
     assert!(ran.code == 1 && ran.stderr.contains("E0801"), "{}", ran.stderr);
-    assert_eq!(folder.files(), ["a.pss"]);
-    folder.write("a.pss", "draw sphere(r: 1)\nexpect solid(sphere(r: 1))\n");
+    for word in ["", "expect solid(sphere(r: 1))\n", "expect 1 is 1\n", "let v = volume(sphere(r: 1))\n"] {
+        folder.write("a.pss", format!("draw sphere(r: 1)\n{word}"));
+        let ran = folder.run(&["test", ".", "--bless"]);
+        assert!(ran.code == 1 && ran.stderr.contains("error[E0807]"), "{word} {}", ran.stderr);
+        assert!(ran.stderr.contains("expect volume(part)"), "{}", ran.stderr);
+        assert_eq!(folder.files(), ["a.pss"]);
+    }
+}
+
+#[test]
+fn a_golden_holds_only_with_a_number_and_is_blessed_again_only_with_one() {
+    let folder = blessed();
+    let before = FILES.map(|file| folder.read(file));
+    let without = SCENE.replace("expect volume(ball) ~= 4.18879 within 10%\n", "");
+    folder.write("a.pss", &without);
+    let ran = folder.run(&["test", "."]);
+    assert!(ran.code == 1 && ran.stderr.contains("error[E0807]"), "{}", ran.stderr);
+    for word in ["", "expect 1 is 1\n"] {
+        folder.write("a.pss", without.clone() + word);
+        let ran = folder.run(&["test", ".", "--bless", "-D", "r=1.01"]);
+        assert!(ran.code == 1 && ran.stderr.contains("error[E0807]"), "{}", ran.stderr);
+    }
+    folder.write("a.pss", SCENE);
+    assert!(FILES.map(|file| folder.read(file)) == before && folder.files() == FILES);
+}
+
+#[test]
+fn a_golden_that_is_gone_is_an_error_as_long_as_another_is_here() {
+    let folder = blessed();
+    for keep in 1..7 {
+        let kept = FILES.map(|file| (file, folder.read(file)));
+        // By bits: which of the three stay.
+        let gone = ["a.exr", "a.png", "a.spans"].into_iter().enumerate().filter(|(i, _)| keep >> i & 1 == 0);
+        let gone: Vec<&str> = gone.map(|(_, file)| file).collect();
+        gone.iter().for_each(|file| std::fs::remove_file(folder.path().join(file)).unwrap());
+        let ran = folder.run(&["test", "."]);
+        assert_eq!(ran.code, 1, "{gone:?} {}", ran.stderr);
+        assert_eq!(ran.stderr.matches("error[E0808]").count(), gone.len(), "{}", ran.stderr);
+        assert!(
+            gone.iter().all(|file| ran.stderr.contains(&format!("`./{file}` is gone"))),
+            "{}",
+            ran.stderr
+        );
+        let ran = folder.run(&["test", ".", "--bless"]);
+        assert!(ran.code == 0, "what did not change is made again: {}", ran.stderr);
+        for (file, bytes) in kept {
+            assert!(folder.read(file) == bytes, "{file}");
+        }
+    }
+    for file in ["a.exr", "a.png", "a.spans"] {
+        std::fs::remove_file(folder.path().join(file)).unwrap();
+    }
+    let ran = folder.run(&["test", "."]);
+    assert!(ran.code == 0 && ran.stderr.contains("ok, no golden"), "nothing remembers it: {}", ran.stderr);
+}
+
+#[test]
+fn other_scenes_of_the_folder_tell_that_goldens_are_gone() {
+    let folder = blessed();
+    folder.write("b.pss", SCENE.replace("draw plane(z: -1)\n", "")).write("words.pss", "let r = 3\n");
+    let ran = folder.run(&["test", "."]);
+    assert!(ran.code == 0 && ran.stderr.matches("warning[W0207]").count() == 1, "{}", ran.stderr);
+    assert!(ran.stderr.contains("`./b.pss` has no golden"), "{}", ran.stderr);
+}
+
+#[test]
+fn goldens_without_their_scene_are_an_error_that_names_them() {
+    let folder = blessed();
+    folder.write("b.pss", SCENE);
+    assert_eq!(folder.run(&["render", "b.pss", "-o", "c.png", "-o", "c.exr", "--size", "8x8", "-q"]).code, 0);
+    std::fs::remove_file(folder.path().join("a.pss")).unwrap();
+    let run = || folder.run(&["test", ".", "--junit", "report.xml"]);
+    let ran = run();
+    assert!(ran.code == 1 && ran.stderr.contains("error[E0808]: `./a.pss` is gone"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("`./a.spans`, `./a.exr`, `./a.png`"), "{}", ran.stderr);
+    assert!(!ran.stderr.contains("c.png") && !ran.stderr.contains("c.exr"), "renderings: {}", ran.stderr);
+    assert!(String::from_utf8(folder.read("report.xml")).unwrap().contains("failures=\"1\""));
+    // Each says by itself that it is one; a folder without any scene is no excuse.
+    std::fs::remove_file(folder.path().join("b.pss")).unwrap();
+    for file in ["a.spans", "a.exr"] {
+        std::fs::remove_file(folder.path().join(file)).unwrap();
+        let ran = run();
+        assert!(ran.code == 1 && ran.stderr.contains("`./a.png`"), "{}", ran.stderr);
+    }
+}
+
+#[test]
+fn blessing_again_shows_what_changed_first_or_does_not_bless() {
+    let folder = blessed();
+    let spans = folder.read("a.spans");
+    let pixels = ["a.exr", "a.png"].map(|file| (file, folder.read(file)));
+    pixels.iter().for_each(|(file, _)| std::fs::remove_file(folder.path().join(file)).unwrap());
+    let again = || folder.run(&["test", ".", "--bless", "-D", "r=1.01"]);
+    let ran = again();
+    assert!(ran.code == 1 && ran.stderr.contains("E0808"), "nothing could show it: {}", ran.stderr);
+    assert!(folder.read("a.spans") == spans && folder.files() == ["a.pss", "a.spans"]);
+    for (file, bytes) in &pixels {
+        folder.write(file, bytes);
+    }
+    let ran = again();
+    assert!(ran.code == 0 && ran.stderr.contains("`./a.diff.png` shows what changed"), "{}", ran.stderr);
+    for first in ["./a.spans: ray ", "./a.exr: pixel ", "./a.png: pixel "] {
+        assert!(ran.stderr.contains(first) && ran.stderr.contains(" was: "), "{first} {}", ran.stderr);
+    }
+}
+
+#[test]
+fn a_picture_of_another_size_is_shown_beside_the_old_one() {
+    let folder = blessed();
+    folder.write("a.pss", SCENE.replace("[160, 120]", "[120, 160]"));
     let ran = folder.run(&["test", ".", "--bless"]);
-    assert!(ran.code == 0 && ran.stderr.contains("warning[W0206]"), "{}", ran.stderr);
-    assert_eq!(folder.files(), FILES);
+    assert!(ran.code == 0 && ran.stderr.contains("the size was: 72 x 54 pixels"), "{}", ran.stderr);
+    let size = image::image_dimensions(folder.path().join("a.diff.png")).unwrap();
+    assert_eq!(size, (3 * (3 * 72 + 2), 3 * (2 * 72 + 1)));
 }
 
 #[test]

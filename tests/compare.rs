@@ -13,7 +13,7 @@ fn picture(pixel: impl Fn(u32, u32) -> [f32; 3]) -> Picture {
         let [r, g, b] = pixel(x, y);
         [r, g, b, 1.0]
     });
-    Picture { size: SIZE, rgba: rgba.collect(), linear: false }
+    Picture { size: SIZE, rgba: rgba.collect(), has_alpha: true, ..Picture::default() }
 }
 
 fn ramp(k: u32) -> Picture {
@@ -70,6 +70,18 @@ fn rmse_is_the_root_of_the_mean_square_over_four_channels() {
 }
 
 #[test]
+fn coverage_counts_where_both_files_hold_it() {
+    let black = picture(|_, _| [0.0; 3]);
+    let mut one = black.clone();
+    one.rgba[24 * 2 + 5] = [0.5, 0.0, 0.0, 0.25];
+    let without = |picture: &Picture| Picture { has_alpha: false, ..picture.clone() };
+    let of_color = (0.25_f64 / (3.0 * 384.0)).sqrt();
+    for (a, b) in [(without(&black), without(&one)), (without(&black), one.clone()), (black, without(&one))] {
+        assert!((value(&a, &b, Metric::Rmse) - of_color).abs() < 1e-15);
+    }
+}
+
+#[test]
 fn numbers_that_are_none_are_alike_only_where_they_are_the_same() {
     let with = |c: f32| {
         let mut p = Picture { linear: true, ..ramp(1) };
@@ -79,7 +91,13 @@ fn numbers_that_are_none_are_alike_only_where_they_are_the_same() {
     assert_eq!(value(&with(f32::NAN), &with(f32::NAN), Metric::Rmse), 0.0);
     assert_eq!(value(&with(f32::INFINITY), &with(f32::INFINITY), Metric::Rmse), 0.0);
     assert_eq!(value(&with(f32::NAN), &with(0.5), Metric::Rmse), f64::INFINITY);
-    assert!(value(&with(f32::NAN), &with(0.5), Metric::Flip).is_finite());
+    for metric in [Metric::Flip, Metric::Block] {
+        assert_eq!(value(&with(f32::INFINITY), &with(f32::INFINITY), metric), 0.0, "{metric:?}");
+        for c in [f32::NAN, f32::INFINITY] {
+            let found = difference(&with(c), &with(1.0), metric).unwrap();
+            assert_eq!((found.value, found.worst(SIZE)), (f64::INFINITY, Some([7, 0])), "{metric:?} {c}");
+        }
+    }
 }
 
 #[test]
@@ -145,6 +163,56 @@ fn the_command_prints_judges_and_draws() {
     // A picture and the light it shows: what eight bits and the curve leave.
     let mixed = run(&["a.exr", "a.exr", "--metric", "rmse"]);
     assert_eq!((mixed.code, text(&mixed)), (0, "0\n".to_owned()));
+}
+
+/// A plane that gives light, seen without perspective: its picture is the same however far away it is.
+const FLAT: &str = "param y = 0\ncamera(eye: [0, -9, 0], look_at: [0, 0, 0], height: 3, kind: \"orthographic\")\n\
+    light(color: #ffffff)\ndraw box([-5, y, -5], [5, y + 1, 5])\n";
+
+#[test]
+fn layers_are_compared_by_rmse_and_whole_numbers_by_pixels() {
+    let folder = Folder::new();
+    let scene =
+        |aov: &str, more: &str| format!("{FLAT}render(size: [8, 6], samples: 1, aov: [{aov}])\n{more}");
+    let far = "\"depth\", \"position\", \"owner\"";
+    folder.write("s.pss", scene(far, "")).write("depth.pss", scene("\"depth\"", ""));
+    folder.write("two.pss", scene(far, "draw box([-9, 5, -9], [9, 6, 9])\n"));
+    folder.write("one.pss", scene(far, "").replace("draw", "draw box([-9, 15, -9], [9, 16, 9])\ndraw"));
+    for (scene, out, y) in [
+        ("s.pss", "a.exr", "y=0"),
+        ("s.pss", "b.exr", "y=5"),
+        ("depth.pss", "d.exr", "y=0"),
+        ("two.pss", "two.exr", "y=0"),
+        ("one.pss", "one.exr", "y=0"),
+        ("s.pss", "a.png", "y=0"),
+    ] {
+        assert_eq!(folder.run(&["render", scene, "-o", out, "-D", y, "-q"]).code, 0, "{out}");
+    }
+    let run = |args: &[&str]| folder.run(&[&["compare"], args].concat());
+    let same = run(&["a.exr", "two.exr"]);
+    assert_eq!(same.code, 0, "{}", same.stderr);
+    assert!(text(&same).contains("\nposition 0\n") && text(&same).contains("\ndepth 0\n"), "{}", text(&same));
+    let moved = run(&["a.exr", "b.exr", "--diff", "d.png"]);
+    assert_eq!(moved.code, 1);
+    assert!(text(&moved).starts_with("rmse  0\nflip  0\nblock 0\n"), "{}", text(&moved));
+    assert!(text(&moved).contains("\ndepth 5  most at 0,0\n"), "{}", text(&moved));
+    assert!(text(&moved).contains("\nposition 2.88675"), "of three channels: {}", text(&moved));
+    assert!(folder.read("d.png").len() > 60 && moved.stderr.contains("depth 5"), "{}", moved.stderr);
+    for (metric, max, code) in [("rmse", "4.9", 1), ("rmse", "5", 0), ("flip", "0", 0), ("block", "0", 0)] {
+        let ran = run(&["a.exr", "b.exr", "--metric", metric, "--max", max]);
+        assert_eq!(ran.code, code, "{metric} {max} {}", ran.stderr);
+    }
+    // The plane is the second solid there: every pixel has another owner, and nothing else.
+    let owner = run(&["a.exr", "one.exr", "--max", "47"]);
+    assert!(
+        owner.code == 1 && text(&owner).contains("\nowner 48 pixels  first at 0,0\n"),
+        "{}",
+        text(&owner)
+    );
+    let fewer = run(&["d.exr", "a.exr", "--max", "1000"]);
+    assert!(fewer.code == 1 && text(&fewer).contains("owner is in `a.exr` alone"), "{}", text(&fewer));
+    let png = run(&["a.exr", "a.png", "--max", "1"]);
+    assert!(png.code == 0 && !text(&png).contains("depth"), "a PNG cannot hold any: {}", text(&png));
 }
 
 #[test]

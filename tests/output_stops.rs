@@ -81,6 +81,23 @@ fn o5_an_interrupt_leaves_the_picture_writes_what_there_is_and_keeps_it() {
 }
 
 #[test]
+fn o5_what_there_was_of_a_stopped_picture_goes_when_the_whole_is_there() {
+    for resume in [&["--resume"][..], &[]] {
+        let folder = folder();
+        folder.write("c.partial.png", "of somebody");
+        let args = ["render", "quick.pss", "-q", "-t", "2", "-o", "b.png", "-o", "b.exr"];
+        assert_eq!(folder.run(&[&args[..], &["--time-limit", "0"]].concat()).code, 75);
+        assert!(folder.files().contains(&"b.partial.exr".to_owned()), "{:?}", folder.files());
+        assert_eq!(folder.run(&[&args[..], resume].concat()).code, 0);
+        let others = ["a.pss", "b.exr", "b.png", "c.partial.png", "quick.pss", "slow.pss"];
+        assert_eq!(folder.files(), others);
+        // No run was stopped that made it.
+        assert_eq!(folder.run(&["render", "quick.pss", "-q", "-o", "c.png"]).code, 0);
+        assert_eq!(folder.read("c.partial.png"), b"of somebody");
+    }
+}
+
+#[test]
 fn o5_a_second_interrupt_ends_at_once() {
     for (name, wanted) in [("-INT", 130), ("-TERM", 143)] {
         let folder = folder();

@@ -3,15 +3,20 @@
 
 mod block;
 mod flip;
+mod layers;
 mod picture;
 
+use std::borrow::Cow;
+
+pub use layers::{Apart, Layer, differences as layers};
 pub use picture::{Picture, heat};
 
-/// How difference is measured. All are 0 where the pictures are the same.
+/// How difference is measured. All are 0 where the pictures are the same, and infinite where one holds a number that is not finite
+/// and the other another.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Metric {
-    /// The root of the mean squared difference of red, green, blue and coverage, in the numbers that the files hold, or in linear
-    /// light where one holds encoded numbers and the other light.
+    /// The root of the mean squared difference of red, green, blue and, where both files hold it, coverage; in the numbers that
+    /// the files hold, or in linear light where one holds encoded numbers and the other light.
     Rmse,
     /// LDR-FLIP (Andersson et al. 2020), its mean over the pixels, from 0 to 1: at 67 pixels a degree, a usual screen at 0.7 m.
     Flip,
@@ -43,30 +48,55 @@ impl Difference {
     }
 }
 
-/// The difference of two pictures; `None` where their sizes are not the same.
+/// The difference in colour of two pictures; `None` where their sizes are not the same.
 pub fn difference(a: &Picture, b: &Picture, metric: Metric) -> Option<Difference> {
     if a.size != b.size {
         return None;
     }
-    Some(match metric {
-        Metric::Rmse => rmse(a, b),
+    let squares = squares(a, b);
+    let found = match metric {
+        Metric::Rmse => return Some(Difference::of_squares(squares)),
         Metric::Flip => flip::difference(a.size, &a.shown(), &b.shown()),
         Metric::Block => block::difference(a.size, &a.shown(), &b.shown()),
-    })
+    };
+    Some(found.with_infinite(&squares))
 }
 
-fn rmse(a: &Picture, b: &Picture) -> Difference {
-    let (a, b) = if a.linear == b.linear { (a.rgba.clone(), b.rgba.clone()) } else { (a.light(), b.light()) };
-    let square = |(a, b): (&[f32; 4], &[f32; 4])| -> f64 {
-        let each = a.iter().zip(b).map(|(a, b)| match a.to_bits() == b.to_bits() {
-            // Of numbers that are none, only the same are alike.
-            true => 0.0,
-            false if a.is_finite() && b.is_finite() => (f64::from(*a) - f64::from(*b)).powi(2),
-            false => f64::INFINITY,
-        });
-        each.sum::<f64>() / 4.0
+impl Difference {
+    /// Of mean squared differences of each pixel.
+    fn of_squares(squares: Vec<f64>) -> Difference {
+        let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
+        Difference { value: mean.sqrt(), map: squares.into_iter().map(f64::sqrt).collect() }
+    }
+
+    /// What displays do not show is a difference all the same where it is without bound.
+    fn with_infinite(mut self, squares: &[f64]) -> Difference {
+        for (shown, _) in self.map.iter_mut().zip(squares).filter(|(_, square)| square.is_infinite()) {
+            (*shown, self.value) = (f64::INFINITY, f64::INFINITY);
+        }
+        self
+    }
+}
+
+/// How far two numbers are apart; of those that are not finite only the same are alike.
+fn apart(a: f32, b: f32) -> f64 {
+    match a == b || a.is_nan() && b.is_nan() {
+        true => 0.0,
+        false if a.is_finite() && b.is_finite() => (f64::from(a) - f64::from(b)).abs(),
+        false => f64::INFINITY,
+    }
+}
+
+/// The mean squared difference of the channels of each pixel.
+fn squares(a: &Picture, b: &Picture) -> Vec<f64> {
+    let channels = if a.has_alpha && b.has_alpha { 4 } else { 3 };
+    let [a, b] = match a.linear == b.linear {
+        true => [a, b].map(|picture| Cow::Borrowed(&picture.rgba[..])),
+        false => [a, b].map(|picture| Cow::Owned(picture.light())),
     };
-    let squares: Vec<f64> = a.iter().zip(&b).map(square).collect();
-    let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
-    Difference { value: mean.sqrt(), map: squares.into_iter().map(f64::sqrt).collect() }
+    let square = |(a, b): (&[f32; 4], &[f32; 4])| {
+        let each = a.iter().zip(b).take(channels).map(|(a, b)| apart(*a, *b).powi(2));
+        each.sum::<f64>() / channels as f64
+    };
+    a.iter().zip(&*b).map(square).collect()
 }

@@ -3,11 +3,12 @@
 use std::io;
 use std::path::Path;
 
+use super::layers::{self, Layer};
 use crate::num::srgb;
-use crate::output::{Format, read_exr, read_png};
+use crate::output::{Format, Pixels, read_channels, read_png};
 
 /// Pixels row by row from the top left.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Default, Debug)]
 pub struct Picture {
     /// Width and height, pixels.
     pub size: [u32; 2],
@@ -15,20 +16,26 @@ pub struct Picture {
     pub rgba: Vec<[f32; 4]>,
     /// Whether the numbers are linear light; else they are encoded as sRGB, from 0 to 1.
     pub linear: bool,
+    /// Whether coverage was in the file; else it is not compared.
+    pub has_alpha: bool,
+    /// What an EXR holds beside its colour; `None` of a PNG, which cannot hold any.
+    pub layers: Option<Vec<Layer>>,
 }
 
 impl Picture {
-    /// Reads a `.png` or an `.exr`; the colour of an EXR, its other layers are not looked at. Fails where the file cannot be read,
-    /// is broken, or has another suffix.
+    /// Reads a `.png` or an `.exr`. Fails where the file cannot be read, is broken, or has another suffix.
     pub fn read(path: &Path) -> io::Result<Picture> {
         match Format::of(path) {
             Some(Format::Png) => {
-                let (size, rgba) = read_png(path)?;
-                Ok(Picture { size, rgba, linear: false })
+                let Pixels { size, rgba, has_alpha } = read_png(path)?;
+                Ok(Picture { size, rgba, linear: false, has_alpha, layers: None })
             }
             Some(Format::Exr) => {
-                let film = read_exr(path)?;
-                Ok(Picture { size: film.size, rgba: film.rgba, linear: true })
+                let channels = read_channels(path)?;
+                let (size, rgba) = (channels.size, channels.rgba());
+                let has_alpha = channels.values("A").is_some();
+                let layers = Some(layers::of(channels.facts()));
+                Ok(Picture { size, rgba, linear: true, has_alpha, layers })
             }
             None => Err(io::Error::new(io::ErrorKind::InvalidInput, "its name does not end in .png or .exr")),
         }

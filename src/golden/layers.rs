@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::csg::Scratch;
 use crate::film::{Aov, Film};
 use crate::geom::{Interval, tolerance};
-use crate::output::read_exr;
+use crate::output::{exr_size, read_exr};
 use crate::render::{Progress, RenderError, View, render_scenery};
 use crate::shot::{Settings, Shot};
 
@@ -52,6 +52,13 @@ pub fn read(path: &Path) -> io::Result<Film> {
             Err(io::Error::new(io::ErrorKind::InvalidData, "it has not the layers depth, N and leaf.id"))
         }
     }
+}
+
+/// Whether a file is a golden: small, without a colour, and with its layers. What people render has a colour.
+pub fn is_golden(path: &Path) -> bool {
+    let size = std::fs::File::open(path).and_then(exr_size);
+    size.is_ok_and(|size| size.iter().all(|side| *side <= SIDE))
+        && read(path).is_ok_and(|film| film.rgba.iter().all(|pixel| *pixel == [0.0; 4]))
 }
 
 /// What a pixel shows.

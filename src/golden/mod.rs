@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use crate::film::Film;
 use crate::geom::Ray;
-use crate::output::{self, OutputError, write_exr, write_rgb, write_whole};
+use crate::output::{self, OutputError, write_exr, write_rgb, write_rgb_noted, write_whole};
 use crate::render::RenderError;
 use crate::shot::Shot;
 use picture::{Pair, Picture};
@@ -55,6 +55,22 @@ impl Kind {
     pub fn beside(self, scene: &Path) -> PathBuf {
         scene.with_extension(self.suffix())
     }
+
+    /// Whether a file of its suffix is a golden, and no rendering that people keep beside their scenes.
+    pub fn is_at(self, path: &Path) -> bool {
+        match self {
+            Kind::Spans => path.is_file(),
+            Kind::Layers => layers::is_golden(path),
+            Kind::Picture => Picture::is_golden(path),
+        }
+    }
+}
+
+/// The goldens that a file belongs to, where it is one: their scene, which may be gone.
+pub fn scene_of(path: &Path) -> Option<PathBuf> {
+    let suffix = path.extension()?;
+    let kind = Kind::ALL.into_iter().find(|kind| suffix == kind.suffix())?;
+    kind.is_at(path).then(|| path.with_extension("pss"))
 }
 
 /// The picture of differences beside a scene.
@@ -73,11 +89,17 @@ pub enum GoldenError {
         /// The reason.
         why: String,
     },
-    /// A picture lies where a golden would go, beside no `.spans`: somebody rendered it.
+    /// A picture lies where a golden would go, beside no golden: somebody rendered it.
     #[error("`{}` lies where a golden goes, and is none", path.display())]
     InTheWay {
         /// The file.
         path: PathBuf,
+    },
+    /// A golden would change, and those that could show how are gone.
+    #[error("`{}` would change, and `{}` and `{}` are gone, which could show how", Kind::Spans.beside(scene).display(), Kind::Layers.beside(scene).display(), Kind::Picture.beside(scene).display())]
+    Unseen {
+        /// The scene.
+        scene: PathBuf,
     },
     /// The scene cannot be rendered.
     #[error(transparent)]
@@ -90,7 +112,7 @@ pub enum GoldenError {
 /// What lies beside a scene.
 #[derive(Debug, Default)]
 pub struct Goldens {
-    /// Where rays go in and out. Pictures without it are none of ours: people keep renderings beside their scenes.
+    /// Where rays go in and out.
     pub spans: Option<Traces>,
     /// The layers.
     pub layers: Option<Film>,
@@ -122,7 +144,7 @@ pub struct Differs {
 pub struct Compared {
     /// Goldens that differ, in the order of [`Kind::ALL`].
     pub differs: Vec<Differs>,
-    /// What was and is to be seen, where goldens with pixels of today's size were compared.
+    /// What was and is to be seen, where goldens with pixels were compared.
     pub pairs: Vec<Pair>,
 }
 
@@ -133,19 +155,17 @@ struct Today {
 }
 
 impl Goldens {
-    /// Reads what lies beside a scene; nothing where there is no `.spans`.
+    /// Reads what lies beside a scene; nothing where no file is surely a golden.
     pub fn read(scene: &Path) -> Result<Goldens, GoldenError> {
+        if !Kind::ALL.into_iter().any(|kind| kind.is_at(&kind.beside(scene))) {
+            return Ok(Goldens::default());
+        }
         let [spans, layers, picture] = Kind::ALL.map(|kind| kind.beside(scene));
         let broken = |path: &Path, why: String| GoldenError::Broken { path: path.to_owned(), why };
-        let Some(text) =
-            present(std::fs::read_to_string(&spans)).map_err(|e| broken(&spans, e.to_string()))?
-        else {
-            return Ok(Goldens::default());
-        };
-        let traces =
-            spans::parse(&text).map_err(|(line, why)| broken(&spans, format!("line {line}: {why}")))?;
+        let text = present(std::fs::read_to_string(&spans)).map_err(|e| broken(&spans, e.to_string()))?;
+        let traces = text.map(|text| spans::parse(&text)).transpose();
         Ok(Goldens {
-            spans: Some(traces),
+            spans: traces.map_err(|(line, why)| broken(&spans, format!("line {line}: {why}")))?,
             layers: present(layers::read(&layers)).map_err(|e| broken(&layers, e.to_string()))?,
             picture: present(Picture::read(&picture)).map_err(|e| broken(&picture, e.to_string()))?,
         })
@@ -153,7 +173,7 @@ impl Goldens {
 
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
-        self.spans.is_none()
+        self.missing().count() == Kind::ALL.len()
     }
 
     /// The kinds that there are none of.
@@ -164,10 +184,14 @@ impl Goldens {
 
     /// Compares with what the scene is now. Only fails to render.
     pub fn compare(&self, shot: &Shot) -> Result<Compared, RenderError> {
-        let Some(was) = &self.spans else { return Ok(Compared::default()) };
         let pixels = self.layers.is_some() || self.picture.is_some();
         let film = pixels.then(|| layers::film(shot)).transpose()?;
-        Ok(self.compare_with(&Today { spans: spans::trace(&shot.world, was.rays), film }, shot))
+        Ok(self.compare_with(&Today { spans: spans::trace(&shot.world, self.rays(shot)), film }, shot))
+    }
+
+    /// The rays of the golden, or those that a new one would have.
+    fn rays(&self, shot: &Shot) -> Rays {
+        self.spans.as_ref().map_or_else(|| Rays::of(shot.world.bounds()), |traces| traces.rays)
     }
 
     fn compare_with(&self, now: &Today, shot: &Shot) -> Compared {
@@ -237,6 +261,7 @@ impl Compared {
         if was.size != now.size {
             let size = |picture: &Picture| format!("{} x {} pixels", picture.size[0], picture.size[1]);
             self.differs.push(differs("the size".to_owned(), pixels(&now), size(&was), size(&now)));
+            self.pairs.push(Pair { was, now, differing: Vec::new() });
             return;
         }
         let differing = find();
@@ -278,8 +303,9 @@ impl Blessed {
     }
 }
 
-/// Makes goldens of what a scene is now: writes those that are not there or differ, the others stay as they are. `inputs` are the
-/// files that the scene reads, and none of which is written over. A file of spans that there is keeps its number and seed of rays.
+/// Makes goldens of what a scene is now: writes those that are not there or differ, the others stay as they are. Before one that
+/// differs is written over, the picture of the differences lies beside the scene. `inputs` are the files that the scene reads, and
+/// none of which is written over. A file of spans that there is keeps its number and seed of rays.
 pub fn bless(
     scene: &Path,
     goldens: &Goldens,
@@ -287,19 +313,23 @@ pub fn bless(
     inputs: &[PathBuf],
 ) -> Result<Blessed, GoldenError> {
     let paths = Kind::ALL.map(|kind| kind.beside(scene));
-    let in_the_way = paths[1..].iter().find(|path| goldens.is_empty() && path.exists());
-    if let Some(path) = in_the_way {
-        return Err(GoldenError::InTheWay { path: path.clone() });
+    let mut missing = goldens.missing();
+    if let Some(kind) = missing.find(|kind| paths[*kind as usize].exists()) {
+        return Err(GoldenError::InTheWay { path: paths[kind as usize].clone() });
     }
     paths.iter().try_for_each(|path| output::check(path, inputs))?;
     output::check(&differences_beside(scene), inputs)?;
-    let fresh = Rays::of(shot.world.bounds());
-    let rays = goldens.spans.as_ref().map_or(fresh, |traces| traces.rays);
+    let rays = goldens.rays(shot);
     let now = Today { spans: spans::trace(&shot.world, rays), film: Some(layers::film(shot)?) };
     let blessed = Blessed { compared: goldens.compare_with(&now, shot), added: goldens.missing().collect() };
+    let is_shown = blessed.compared.show_beside(scene)?;
+    if !blessed.compared.differs.is_empty() && !is_shown {
+        return Err(GoldenError::Unseen { scene: scene.to_owned() });
+    }
     let differing = blessed.compared.differs.iter().map(|d| d.kind);
     for kind in blessed.added.iter().copied().chain(differing) {
-        write(kind, &paths[kind as usize], &now, Rays { bounds: fresh.bounds, ..rays }, shot)?;
+        let rays = Rays { bounds: Rays::of(shot.world.bounds()).bounds, ..rays };
+        write(kind, &paths[kind as usize], &now, rays, shot)?;
     }
     Ok(blessed)
 }
@@ -313,7 +343,7 @@ fn write(kind: Kind, path: &Path, now: &Today, rays: Rays, shot: &Shot) -> Resul
         Kind::Layers => write_exr(&layers::alone(film), sink),
         Kind::Picture => {
             let Picture { size, bytes } = Picture::of(film, &shot.settings);
-            write_rgb(size, &bytes, sink)
+            write_rgb_noted(size, &bytes, picture::NOTE, sink)
         }
     })
 }

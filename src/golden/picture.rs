@@ -6,8 +6,11 @@ use std::path::Path;
 use super::layers;
 use crate::compare::heat;
 use crate::film::Film;
-use crate::output::{read_png, tone};
+use crate::output::{Pixels, png_note, read_png, tone};
 use crate::shot::Settings;
+
+/// What the file of a golden says of itself, so that it is not taken for a rendering.
+pub const NOTE: [&str; 2] = ["pss.golden", "what the scene beside it shows"];
 
 /// An 8-bit picture.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -28,9 +31,14 @@ impl Picture {
 
     /// Reads a `.png`; fails where it cannot be read or is broken.
     pub fn read(path: &Path) -> io::Result<Picture> {
-        let (size, pixels) = read_png(path)?;
+        let Pixels { size, rgba, .. } = read_png(path)?;
         let levels = |[r, g, b, _]: [f32; 4]| [r, g, b].map(|c| (255.0 * c).round() as u8);
-        Ok(Picture { size, bytes: pixels.into_iter().flat_map(levels).collect() })
+        Ok(Picture { size, bytes: rgba.into_iter().flat_map(levels).collect() })
+    }
+
+    /// Whether a file says that it is a golden.
+    pub fn is_golden(path: &Path) -> bool {
+        png_note(path, NOTE[0]).is_ok_and(|note| note.is_some())
     }
 
     /// The colour of a pixel, in words.
@@ -53,14 +61,14 @@ pub fn differing(was: &Picture, now: &Picture, film: &Film) -> Vec<usize> {
     layers::wrong(apart, off, edges.len())
 }
 
-/// What was and what is, of one size, and which pixels differ.
+/// What was and what is, and which pixels differ.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Pair {
     /// As the golden is.
     pub was: Picture,
     /// As it is now.
     pub now: Picture,
-    /// Ascending.
+    /// Ascending; empty where their sizes are not the same.
     pub differing: Vec<usize>,
 }
 
@@ -68,18 +76,19 @@ pub struct Pair {
 const ZOOM: u32 = 3;
 
 /// A picture of differences: a row for each pair, from left to right what was, where they differ (light, and dim by how many levels
-/// the rest is off), what is.
+/// the rest is off; nothing where the sizes are not the same), what is.
 pub fn differences(pairs: &[Pair]) -> Picture {
-    let width = pairs.iter().map(|pair| 3 * pair.was.size[0] + 2).max().unwrap_or(1);
-    let height = pairs.iter().map(|pair| pair.was.size[1] + 1).sum::<u32>().max(2) - 1;
+    let width = pairs.iter().map(|pair| 3 * pair.size()[0] + 2).max().unwrap_or(1);
+    let height = pairs.iter().map(|pair| pair.size()[1] + 1).sum::<u32>().max(2) - 1;
     let mut small = vec![[64; 3]; (width * height) as usize];
     let mut top = 0;
     for pair in pairs {
-        let [w, h] = pair.was.size;
+        let [w, h] = pair.size();
         for (i, panel) in [&pair.was, &pair.map(), &pair.now].into_iter().enumerate() {
-            for (x, y) in (0..h).flat_map(|y| (0..w).map(move |x| (x, y))) {
+            let [pw, ph] = panel.size;
+            for (x, y) in (0..ph).flat_map(|y| (0..pw).map(move |x| (x, y))) {
                 let to = (top + y) * width + i as u32 * (w + 1) + x;
-                small[to as usize] = panel.at((y * w + x) as usize);
+                small[to as usize] = panel.at((y * pw + x) as usize);
             }
         }
         top += h + 1;
@@ -91,8 +100,16 @@ pub fn differences(pairs: &[Pair]) -> Picture {
 }
 
 impl Pair {
+    /// Room for either.
+    fn size(&self) -> [u32; 2] {
+        [0, 1].map(|i| self.was.size[i].max(self.now.size[i]))
+    }
+
     /// Where they differ.
     fn map(&self) -> Picture {
+        if self.was.size != self.now.size {
+            return Picture { size: [0, 0], bytes: Vec::new() };
+        }
         let level = |pixel: usize| {
             let apart = self.was.at(pixel).iter().zip(self.now.at(pixel)).map(|(a, b)| a.abs_diff(b)).max();
             match self.differing.binary_search(&pixel) {

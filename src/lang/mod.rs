@@ -142,11 +142,11 @@ pub fn read_with(sources: &mut SourceMap, file: FileId, reading: &Reading) -> Re
     match catch_unwind(read) {
         Ok(read) => read,
         Err(panic) if begun => resume_unwind(panic),
-        Err(_) => Err(vec![
-            Diagnostic::error("E0704", "no memory to read the scene")
-                .help("close other programs, or allow this one more memory")
-                .fault(crate::diag::Fault::Io),
-        ]),
+        Err(_) => {
+            let wanted = format!("no memory to read the scene: {} MiB are wanted", STACK_BYTES >> 20);
+            let error = Diagnostic::error("E0704", wanted).fault(crate::diag::Fault::Memory);
+            Err(vec![error.help("close other programs, or allow this one more memory")])
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::exr::{ExrRows, exr_size};
 use super::png::{PngRows, png_size};
 use super::rows::{Encode, Picture};
-use super::whole::{Draft, Old};
+use super::whole::{Draft, Old, follow};
 use super::{Format, OutputError};
 use crate::film::Film;
 
@@ -65,6 +65,14 @@ impl Growing {
 pub fn partial(path: &Path) -> PathBuf {
     let suffix = path.extension().unwrap_or_default().to_string_lossy();
     path.with_extension(format!("partial.{suffix}"))
+}
+
+/// Removes what a stopped run left of a picture, now that it is whole. Fails quietly: one that stays is only litter.
+pub fn remove_partial(path: &Path) {
+    let there = follow(path).with_file_name(partial(path).file_name().unwrap_or_default());
+    if there.symlink_metadata().is_ok_and(|meta| meta.is_file()) {
+        let _ = std::fs::remove_file(there);
+    }
 }
 
 fn encoder(format: Format, sink: BufWriter<File>, picture: &Picture) -> io::Result<Box<dyn Encode>> {

@@ -3,19 +3,20 @@
 
 mod exr;
 mod growing;
+mod hidden;
 mod png;
 mod rows;
 pub mod state;
 pub mod tone;
 mod whole;
 
-use std::fs;
+use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-pub use self::exr::{ExrRows, read_exr, write_exr};
-pub use self::png::{PngRows, read_png, write_png, write_rgb};
-pub use growing::{Growing, partial};
+pub use self::exr::{Channel, Channels, ExrRows, exr_size, read_channels, read_exr, write_exr};
+pub use self::png::{Pixels, PngRows, png_note, read_png, write_png, write_rgb, write_rgb_noted};
+pub use growing::{Growing, partial, remove_partial};
 pub use rows::{Encode, Picture, about, settings_line};
 pub use whole::{Old, Sink, write_whole};
 
@@ -83,6 +84,9 @@ pub fn check(path: &Path, inputs: &[PathBuf]) -> Result<(), OutputError> {
         Ok(meta) if !meta.is_file() => return Err(refused("it is not a regular file".to_owned())),
         _ => {}
     }
+    if whole::follow(path).is_symlink() {
+        return Err(refused("its links lead in a circle".to_owned()));
+    }
     whole::try_folder(path).map_err(|e| refused(e.to_string()))
 }
 
@@ -109,6 +113,15 @@ fn exists(path: &Path) -> OutputError {
 fn is_one(a: &fs::Metadata, b: &fs::Metadata) -> bool {
     use std::os::unix::fs::MetadataExt;
     (a.dev(), a.ino()) == (b.dev(), b.ino())
+}
+
+/// Whether a file is the one that a name leads to.
+fn is_at(file: &File, path: &Path) -> bool {
+    #[cfg(unix)]
+    if let (Ok(a), Ok(b)) = (file.metadata(), fs::metadata(path)) {
+        return is_one(&a, &b);
+    }
+    cfg!(not(unix)) && file.metadata().is_ok() && path.exists()
 }
 
 /// Whether two names lead to one file.

@@ -24,11 +24,29 @@ pub fn write_png(film: &Film, exposure: f64, tone: Tone, sink: impl Write) -> io
 
 /// Writes 8-bit sRGB, three bytes a pixel, row by row from the top left.
 pub fn write_rgb(size: [u32; 2], bytes: &[u8], sink: impl Write) -> io::Result<()> {
+    rgb(size, bytes, None, sink)
+}
+
+/// The same with a note: a keyword and a text, both Latin-1.
+pub fn write_rgb_noted(size: [u32; 2], bytes: &[u8], note: [&str; 2], sink: impl Write) -> io::Result<()> {
+    rgb(size, bytes, Some(note), sink)
+}
+
+fn rgb(size: [u32; 2], bytes: &[u8], note: Option<[&str; 2]>, sink: impl Write) -> io::Result<()> {
     at_once(sink, |sink| {
-        let mut writer = Rgb::begin(sink, size)?;
+        let mut writer = Rgb::begin(sink, size, note)?;
         writer.write(bytes)?;
         writer.finish()
     })
+}
+
+/// The text of a note before the pixels; they are not read. Fails where the file is no PNG.
+pub fn png_note(path: &Path, keyword: &str) -> io::Result<Option<String>> {
+    let file = BufReader::new(std::fs::File::open(path)?);
+    let broken = |e: png::DecodingError| io::Error::new(io::ErrorKind::InvalidData, e);
+    let reader = png::Decoder::new(file).read_info().map_err(broken)?;
+    let mut notes = reader.info().uncompressed_latin1_text.iter();
+    Ok(notes.find(|note| note.keyword == keyword).map(|note| note.text.clone()))
 }
 
 /// Writes a file that is made in memory: the encoder takes no sinks that are borrowed.
@@ -40,17 +58,29 @@ fn at_once(mut sink: impl Write, encode: impl FnOnce(Shared<Vec<u8>>) -> io::Res
     sink.flush()
 }
 
-/// Reads a PNG of any depth: its size, and red, green, blue and coverage from 0 to 1 as they are encoded, row by row from the top
-/// left. Fails where it cannot be read or is broken.
-pub fn read_png(path: &Path) -> io::Result<([u32; 2], Vec<[f32; 4]>)> {
+/// What a PNG holds.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Pixels {
+    /// Width and height.
+    pub size: [u32; 2],
+    /// Red, green, blue and coverage from 0 to 1 as they are encoded, row by row from the top left.
+    pub rgba: Vec<[f32; 4]>,
+    /// Whether the file holds coverage; else it is 1 here.
+    pub has_alpha: bool,
+}
+
+/// Reads a PNG of any depth. Fails where it cannot be read or is broken.
+pub fn read_png(path: &Path) -> io::Result<Pixels> {
     let mut reader = ImageReader::new(BufReader::new(std::fs::File::open(path)?));
     reader.set_format(ImageFormat::Png);
     let image = reader.decode().map_err(|e| match e {
         ImageError::IoError(e) => e,
         e => io::Error::new(io::ErrorKind::InvalidData, e),
     })?;
+    let has_alpha = image.color().has_alpha();
     let image = image.into_rgba32f();
-    Ok(([image.width(), image.height()], image.pixels().map(|p| p.0).collect()))
+    let size = [image.width(), image.height()];
+    Ok(Pixels { size, rgba: image.pixels().map(|p| p.0).collect(), has_alpha })
 }
 
 /// The size that the head of a file tells; fails where it cannot be read.
@@ -75,7 +105,7 @@ impl<W: Write + 'static> PngRows<W> {
     /// Writes the head.
     pub fn begin(sink: W, picture: &Picture) -> io::Result<PngRows<W>> {
         let display = tone::Display::new(picture.exposure, picture.tone);
-        Ok(PngRows { writer: Rgb::begin(sink, picture.size)?, display, row: Vec::new() })
+        Ok(PngRows { writer: Rgb::begin(sink, picture.size, None)?, display, row: Vec::new() })
     }
 }
 
@@ -101,13 +131,16 @@ struct Rgb<W: Write + 'static> {
 }
 
 impl<W: Write + 'static> Rgb<W> {
-    fn begin(sink: W, [w, h]: [u32; 2]) -> io::Result<Rgb<W>> {
+    fn begin(sink: W, [w, h]: [u32; 2], note: Option<[&str; 2]>) -> io::Result<Rgb<W>> {
         let sink = Shared::new(sink);
         let mut encoder = Encoder::new(sink.clone(), w, h);
         encoder.set_color(ColorType::Rgb);
         encoder.set_depth(BitDepth::Eight);
         encoder.set_compression(Compression::Fast);
         encoder.set_filter(Filter::Adaptive);
+        if let Some([keyword, text]) = note {
+            encoder.add_text_chunk(keyword.to_owned(), text.to_owned()).map_err(io_error)?;
+        }
         let begun = encoder.write_header().and_then(|w| w.into_stream_writer_with_size(CHUNK_BYTES));
         match (sink.failure(), begun) {
             (Some(e), _) => Err(e),

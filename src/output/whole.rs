@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use super::OutputError;
+use super::{OutputError, hidden};
 
 /// Where an encoder writes to.
 pub trait Sink: Write + Seek + Send {}
@@ -50,8 +50,9 @@ impl Draft {
     /// Makes an empty one beside the file that it will be.
     pub fn begin(path: &Path) -> Result<Draft, OutputError> {
         let target = follow(path);
-        let file = temporary(&target)
+        let file = hidden::create(&target)
             .map_err(|e| OutputError::Create { path: path.to_owned(), why: e.to_string() })?;
+        hidden::sweep(&target);
         Ok(Draft { path: path.to_owned(), target, file })
     }
 
@@ -90,43 +91,28 @@ impl Draft {
             })?,
         };
         // The file is whole and in place; a folder that cannot be synced only risks its old content after a crash.
-        let _ = File::open(folder(&target)).and_then(|folder| folder.sync_all());
+        let _ = File::open(hidden::folder(&target)).and_then(|folder| folder.sync_all());
         Ok(())
     }
 }
 
 /// Whether a file can be made beside this one: makes one and removes it.
 pub fn try_folder(path: &Path) -> io::Result<()> {
-    temporary(&follow(path)).map(drop)
+    hidden::create(&follow(path)).map(drop)
 }
 
-/// The file a link leads to: the link itself stays.
+/// Links after one another that are followed; systems take forty at most.
+const MOST_LINKS: usize = 40;
+
+/// The file that links lead to, whether it is there or not: the links themselves stay. A link where they lead in a circle.
 pub fn follow(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| path.to_owned())
-}
-
-fn folder(path: &Path) -> &Path {
-    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
-/// A new hidden file beside `path`, open to whom the user's mask lets in.
-fn temporary(path: &Path) -> io::Result<NamedTempFile> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    // Names have a limit of 255 bytes; the first letters are enough to recognise a file left by a crash.
-    let prefix: String = format!(".{name}").chars().take(40).collect::<String>() + ".";
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(&prefix).suffix(".tmp");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder(path)).map_err(|e| io::Error::new(e.kind(), bare(&e)))
-}
-
-/// The system's reason without the temporary name, which would only puzzle.
-fn bare(e: &io::Error) -> String {
-    match e.kind() {
-        io::ErrorKind::NotFound => "the folder does not exist".to_owned(),
-        io::ErrorKind::PermissionDenied => "the folder cannot be written to".to_owned(),
-        io::ErrorKind::NotADirectory => "its folder is not a folder".to_owned(),
-        _ => e.to_string(),
+    if let Ok(there) = path.canonicalize() {
+        return there;
     }
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(next) = std::fs::read_link(&path) else { break };
+        path = hidden::folder(&path).join(next);
+    }
+    path
 }

@@ -1,5 +1,5 @@
 //! A client of `pss lsp`, over its pipes as an editor speaks.
-
+#![allow(dead_code)]
 // Each program uses a part.
 #![allow(dead_code)]
 

@@ -117,10 +117,11 @@ pub struct CompareArgs {
     /// Another of the same size
     pub b: PathBuf,
     /// How difference is measured: rmse (of the numbers), flip (what an eye sees, 0 to 1) or block (levels of 255 by which some
-    /// 3 x 3 pixels are all off to the same side); without it all are printed, and the first decides
+    /// 3 x 3 pixels are all off to the same side); without it all are printed, and the first decides. Only rmse looks at layers of
+    /// EXR files: at each that either has, whole numbers by how many pixels are not the same
     #[arg(long, value_name = "rmse|flip|block", value_parser = crate::compare::metric)]
     pub metric: Option<crate::compare::MetricWord>,
-    /// The largest difference that passes; more exits with 1
+    /// The largest difference that passes, of colour and of each layer; more exits with 1
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = at_most)]
     pub max: Option<f64>,
     /// Write where they differ as a picture: black for nothing, light for the most

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use pss::compare::{Difference, METRICS, Metric, Picture, difference, heat};
+use pss::compare::{Apart, Difference, METRICS, Metric, Picture, difference, heat, layers};
 use pss::diag::{Diagnostic, Fault};
 use pss::output::{self, Format, write_rgb, write_whole};
 
@@ -28,23 +28,65 @@ pub fn run(args: &CompareArgs, console: &Console) -> Result<u8, Failure> {
         let Some(difference) = difference(&a, &b, *metric) else { return Err(sizes(args, &a, &b)) };
         found.push((*word, difference));
     }
-    let text: String = found.iter().map(|(word, d)| line(word, d, a.size, chosen.is_none())).collect();
+    // They are numbers that no eye sees.
+    let layers = if found[0].0 == METRICS[0].0 { layers(&a, &b) } else { Vec::new() };
+    let mut text: String = found.iter().map(|(word, d)| line(word, d, a.size, chosen.is_none())).collect();
+    layers.iter().for_each(|layer| text += &(layer_told(layer, args, a.size) + "\n"));
     console::print(text.as_bytes())?;
-    let (word, judged) = &found[0];
     if let Some(path) = &args.diff {
-        write_map(path, a.size, judged)?;
+        // Where colour has nothing to show, the first layer that has.
+        let color = &found[0].1;
+        let shown = layers.iter().filter_map(measured).find(|d| color.value == 0.0 && 0.0 < d.value);
+        write_map(path, a.size, shown.unwrap_or(color))?;
     }
-    let most = args.max.unwrap_or(0.0);
-    if judged.value <= most {
+    let wrong = wrong(args, &found[0], &layers, a.size);
+    if wrong.is_empty() {
         return Ok(0);
     }
-    let told = format!("the pictures differ: {word} {} is more than {most}", judged.value);
+    let told = format!("the pictures differ: {}", wrong.join("; "));
     let error = Diagnostic::error("E0803", told).fault(Fault::Unmet);
     let error = match args.diff {
         Some(_) => error,
         None => error.help("`--diff FILE.png` shows where"),
     };
     Ok(console.fail(&Failure::from(error)))
+}
+
+/// What is beyond that which passes, in words.
+fn wrong(
+    args: &CompareArgs,
+    (word, color): &(&str, Difference),
+    layers: &[(String, Apart)],
+    size: [u32; 2],
+) -> Vec<String> {
+    let most = args.max.unwrap_or(0.0);
+    let color = (most < color.value).then(|| format!("{word} {} is more than {most}", color.value));
+    let apart = layers.iter().filter(|layer| measured(layer).is_none_or(|d| most < d.value));
+    color.into_iter().chain(apart.map(|layer| layer_told(layer, args, size))).collect()
+}
+
+/// The difference of a layer that both have.
+fn measured((_, apart): &(String, Apart)) -> Option<&Difference> {
+    match apart {
+        Apart::Rmse(difference) | Apart::Pixels(difference) => Some(difference),
+        Apart::First | Apart::Second | Apart::Channels => None,
+    }
+}
+
+/// What there is to say of a layer.
+fn layer_told((name, apart): &(String, Apart), args: &CompareArgs, size: [u32; 2]) -> String {
+    let place = |d: &Difference| d.worst(size).map(|[x, y]| format!("{x},{y}"));
+    match apart {
+        Apart::First => format!("{name} is in `{}` alone", args.a.display()),
+        Apart::Second => format!("{name} is in `{}` alone", args.b.display()),
+        Apart::Channels => format!("{name} has other channels"),
+        Apart::Rmse(d) => {
+            place(d).map_or(format!("{name} 0"), |at| format!("{name} {}  most at {at}", d.value))
+        }
+        Apart::Pixels(d) => {
+            place(d).map_or(format!("{name} 0"), |at| format!("{name} {} pixels  first at {at}", d.value))
+        }
+    }
 }
 
 fn read(path: &Path) -> Result<Picture, Failure> {

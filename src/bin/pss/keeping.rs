@@ -41,6 +41,8 @@ pub struct Keeping {
     last: Instant,
     /// Tiles painted so far.
     painted: u32,
+    /// Whether an earlier run was stopped before the picture was whole.
+    follows_a_stop: bool,
     /// Why nothing is kept.
     trouble: Option<String>,
 }
@@ -56,6 +58,7 @@ impl Keeping {
     ) -> Result<Keeping, Failure> {
         let layout = Layout { window: settings.window(), aovs: settings.aov.clone() };
         let mut claim = Claim::new(output)?;
+        let follows_a_stop = claim.has_state();
         let (mut state, mut told) = (None, None);
         if args.resume && claim.has_state() {
             match claim.resume(&identities.whole(), layout.clone())? {
@@ -82,7 +85,8 @@ impl Keeping {
             console.show(told.as_slice(), &SourceMap::default());
         }
         let (identities, now) = (Arc::clone(identities), Instant::now());
-        Ok(Keeping { claim, state, identities, layout, start: now, last: now, painted: 0, trouble: None })
+        let (start, last, painted, trouble) = (now, now, 0, None);
+        Ok(Keeping { claim, state, identities, layout, start, last, painted, follows_a_stop, trouble })
     }
 
     /// A tile of an earlier run.
@@ -135,6 +139,11 @@ impl Keeping {
         let failed = self.state.as_ref().and_then(|state| state.failure().map(ToString::to_string));
         let why = self.trouble.clone().or(failed)?;
         Some(warning("not all that was painted could be kept for `--resume`").note(why))
+    }
+
+    /// Whether an earlier run was stopped, and left what there was.
+    pub fn follows_a_stop(&self) -> bool {
+        self.follows_a_stop
     }
 
     /// Whether a later run can go on.

@@ -19,6 +19,7 @@ mod live;
 mod load;
 mod lsp;
 mod making;
+mod numbers;
 mod probe;
 mod progress;
 mod render;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use pss::film::Film;
-use pss::output::{Encode, Growing, Old, OutputError, Picture, PngRows, partial};
+use pss::output::{Encode, Growing, Old, OutputError, Picture, PngRows, partial, remove_partial};
 use pss::render::{Moment, Onlooker, Slab, Tile, Work};
 use tempfile::SpooledTempFile;
 
@@ -57,10 +57,16 @@ impl Making {
         self.files.iter().map(|file| file.temporary().to_owned()).collect()
     }
 
-    /// Gives all files their names, and forgets what was kept.
-    pub fn finish(self, old: Old) -> Result<(), Failure> {
+    /// Gives all files their names, and forgets what was kept. What an earlier run that was stopped left of them goes, but for
+    /// files `taken` for something else.
+    pub fn finish(self, old: Old, taken: &[PathBuf]) -> Result<(), Failure> {
+        let goes_on = self.keeping.as_ref().is_some_and(Keeping::follows_a_stop);
         for file in self.files {
+            let path = file.path().to_owned();
             file.finish(old)?;
+            if goes_on && !taken.contains(&partial(&path)) {
+                remove_partial(&path);
+            }
         }
         if let Some((encoder, spool)) = self.stdout {
             encoder.finish().map_err(|e| to_stdout(Path::new("-"), e))?;

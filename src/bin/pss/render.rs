@@ -60,7 +60,8 @@ pub fn once(args: &RenderArgs, inputs: &Inputs, console: &Console) -> Result<(),
     let (making, done) = render(args, (&outputs, &loaded), making, start, console)?;
     let rendering = rendering.elapsed();
     let writing = Instant::now();
-    making.finish(if args.no_clobber { Old::Kept } else { Old::Replaced })?;
+    let old = if args.no_clobber { Old::Kept } else { Old::Replaced };
+    making.finish(old, &taken(args, &outputs, &loaded))?;
     let layers = loaded.shot.settings.aov.len();
     let Loaded { parsing, loading, preparing, scans, inputs, sources, .. } = loaded;
     let files = inputs.len() - sources.files().filter(|f| f.path.is_some()).count();
@@ -139,11 +140,14 @@ fn render(
     match making.failure.take() {
         Some(e) => Err(e.into()),
         None if done.missing == 0 => Ok((making, done)),
-        None => {
-            let taken = [&loaded.inputs[..], outputs].concat();
-            Err(stopped(&done, making, stoppable.signal(), &taken))
-        }
+        None => Err(stopped(&done, making, stoppable.signal(), &taken(args, outputs, loaded))),
     }
+}
+
+/// All files that are something else than what there is of a stopped picture.
+fn taken(args: &RenderArgs, outputs: &[PathBuf], loaded: &Loaded) -> Vec<PathBuf> {
+    let others = args.stats_json.iter().chain(&args.deps);
+    loaded.inputs.iter().chain(outputs).chain(others).cloned().collect()
 }
 
 /// Leaves what there is of a picture of which tiles are missing.

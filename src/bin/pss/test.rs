@@ -1,9 +1,11 @@
 //! `pss test`: the `expect` items of a folder's scenes, whether each can be prepared, and whether it is what its goldens say.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use pss::diag::{Diagnostic, Fault};
+use pss::golden;
 use pss::output::write_whole;
 use pss::prepare::Options;
 use pss::report;
@@ -16,11 +18,15 @@ use crate::load;
 
 /// Runs all scenes; 0 where all hold, 1 where an expectation or a golden does not, else the code of the first that cannot be read.
 pub fn run(args: &TestArgs, console: &Console) -> Result<u8, Failure> {
-    let scenes = scenes(&args.folder)?;
+    let Found { scenes, gone } = found(&args.folder)?;
     let (mut code, mut bare, mut outcomes) = (0, 0, Vec::new());
-    for scene in scenes {
+    let here = scenes.into_iter().map(|scene| (scene, true));
+    for (scene, is_here) in here.chain(gone.into_iter().map(|scene| (scene, false))) {
         let start = Instant::now();
-        let done = test(&scene, args, console);
+        let done = match is_here {
+            true => test(&scene, args, console),
+            false => Err(Failure::from(goldens::orphans(&scene))),
+        };
         let (told, failure) = match done {
             Ok(kept) => {
                 bare += usize::from(kept.is_bare);
@@ -58,28 +64,26 @@ fn test(scene: &Path, args: &TestArgs, console: &Console) -> Result<goldens::Kep
         // What does not hold is no example for later.
         true if !unmet.is_empty() => Ok(goldens::Kept::default()),
         true => goldens::bless(scene, &loaded, console),
-        false => goldens::compare(scene, &loaded),
+        false => goldens::compare(scene, &loaded, console),
     };
     let kept = kept.map_err(|more| unmet.extend(more)).unwrap_or_default();
     if unmet.is_empty() { Ok(kept) } else { Err(Failure::new(unmet, loaded.sources)) }
 }
 
-/// The scenes of a folder and the folders in it, in the order of their names.
-fn scenes(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let missing = |path: &Path, e: std::io::Error| {
-        let error = match e.kind() {
-            std::io::ErrorKind::NotFound => {
-                Diagnostic::error("E0601", format!("there is no `{}`", path.display()))
-                    .help("name a scene or a folder of scenes")
-            }
-            _ => Diagnostic::error("E0601", format!("cannot read `{}`", path.display())).help(e.to_string()),
-        };
-        Failure::from(error.fault(Fault::Missing))
-    };
+/// What a folder holds, in the order of the names.
+#[derive(Default)]
+struct Found {
+    scenes: Vec<PathBuf>,
+    /// Scenes that are not there, and whose goldens are.
+    gone: BTreeSet<PathBuf>,
+}
+
+/// Looks through a folder and the folders in it.
+fn found(folder: &Path) -> Result<Found, Failure> {
     if folder.is_file() {
-        return Ok(vec![folder.to_owned()]);
+        return Ok(Found { scenes: vec![folder.to_owned()], ..Found::default() });
     }
-    let (mut scenes, mut open) = (Vec::new(), vec![folder.to_owned()]);
+    let (mut found, mut open) = (Found::default(), vec![folder.to_owned()]);
     while let Some(next) = open.pop() {
         for entry in std::fs::read_dir(&next).map_err(|e| missing(&next, e))? {
             let entry = entry.map_err(|e| missing(&next, e))?;
@@ -88,14 +92,27 @@ fn scenes(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
             if kind.is_dir() {
                 open.push(path);
             } else if path.extension().is_some_and(|e| e == "pss") {
-                scenes.push(path);
+                found.scenes.push(path);
+            } else if kind.is_file() && !path.with_extension("pss").exists() {
+                found.gone.extend(golden::scene_of(&path));
             }
         }
     }
-    scenes.sort();
-    if scenes.is_empty() {
+    found.scenes.sort();
+    if found.scenes.is_empty() && found.gone.is_empty() {
         let message = format!("`{}` holds no scenes", folder.display());
         return Err(Failure::from(Diagnostic::error("E0601", message).fault(Fault::Missing)));
     }
-    Ok(scenes)
+    Ok(found)
+}
+
+fn missing(path: &Path, e: std::io::Error) -> Failure {
+    let error = match e.kind() {
+        std::io::ErrorKind::NotFound => {
+            Diagnostic::error("E0601", format!("there is no `{}`", path.display()))
+                .help("name a scene or a folder of scenes")
+        }
+        _ => Diagnostic::error("E0601", format!("cannot read `{}`", path.display())).help(e.to_string()),
+    };
+    Failure::from(error.fault(Fault::Missing))
 }

@@ -12,6 +12,7 @@ macro_rules! scan {
 }
 
 mod errors;
+mod judged;
 mod warnings;
 
 /// What a code means.
@@ -62,5 +63,5 @@ const fn takes(what: &'static str) -> [&'static str; 2] {
 
 /// All codes: errors, then warnings, each in their order.
 pub fn all() -> impl Iterator<Item = &'static Code> {
-    errors::CODES.iter().chain(warnings::CODES)
+    errors::CODES.iter().chain(judged::CODES).chain(warnings::CODES)
 }

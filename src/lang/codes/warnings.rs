@@ -164,12 +164,12 @@ pub const CODES: &[Code] = &[
         ["let a = rgb(255, 128, 0)", "let a = #ff8000"],
     ),
     code(
-        "W0206",
-        "A scene is blessed that says of no number what it shall be.",
-        "Let it expect what a formula knows of it, so that a wrong golden is seen: `expect volume(part) ~= 6.43 within 0.1%`.",
+        "W0207",
+        "A scene has no golden, and other scenes of its folder have.",
+        "Bring back what was removed, or `pss test --bless` makes goldens of what the scene is now.",
         [
-            "$ pss test scene.pss --bless\nrender(size: [8, 8], samples: 1)\ndraw sphere(r: 1)",
-            "$ pss test scene.pss --bless\nrender(size: [8, 8], samples: 1)\ndraw sphere(r: 1)\nexpect volume(sphere(r: 1)) ~= 4.18879 within 0.1%",
+            "$ pss test scene.pss\ndraw sphere(r: 1)\n--- other.spans\npss spans 1",
+            "$ pss test scene.pss\ndraw sphere(r: 1)\n--- other.txt\npss spans 1",
         ],
     ),
 ];

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::head::{self, Identity, Layout, Part, Reading};
 use super::{Found, State};
+use crate::output::is_at;
 use crate::output::whole::follow;
 
 /// Why an output cannot be claimed, or its state not be resumed.
@@ -119,13 +120,4 @@ impl Drop for Claim {
             let _ = fs::remove_file(&self.path);
         }
     }
-}
-
-/// Whether a file is the one that a name leads to.
-fn is_at(file: &File, path: &Path) -> bool {
-    #[cfg(unix)]
-    if let (Ok(a), Ok(b)) = (file.metadata(), fs::metadata(path)) {
-        return crate::output::is_one(&a, &b);
-    }
-    cfg!(not(unix)) && file.metadata().is_ok() && path.exists()
 }
