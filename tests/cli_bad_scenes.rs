@@ -33,7 +33,7 @@ fn a_wrong_scene_is_told_with_its_code_and_its_place() {
         ("draw sphere(r: 1)\ncamera(eye: [0, 0, 0], look_at: [0, 0, 0], fov: 30deg)", "E0407", "2:"),
         ("render(size: [0, 8])\ndraw sphere(r: 1)", "E0407", "1:14"),
         ("draw sphere(r: 1).rotate_x(90)", "E05", "1:28"),
-        ("draw points(sphere(r: 1))", "E0402", "1:6"),
+        ("draw points(sphere(r: 1))", "E0404", "1:6"),
         ("draw points(half_space(z < 0), samples: 100)", "E0306", "1:13"),
         ("draw box([0, 0, 0], [1, 1, 1]).close(max_hole: 1)", "E0304", "1:"),
     ];
