@@ -3,15 +3,16 @@
 //!     cargo bench --bench light [-- OUT]
 //!
 //! Each scene is rendered once with very many samples, under another seed: the truth. Then with so and so many samples for
-//! every pixel, and with so and so small an error asked, on one thread, in turns. The error of a picture is the root of the mean
+//! every pixel, and with so and so small an error asked, on one thread, in turns; what is timed is the processor, so that other work on the machine does not
+//! count. The error of a picture is the root of the mean
 //! squared difference from the truth of what a display shows, sRGB from 0 to 1, of its linear colours cut at one.
 
 mod plot;
 mod scenes;
 
 use std::fs;
-use std::time::Instant;
 
+use cpu_time::ProcessTime;
 use pss::film::Film;
 use pss::num::srgb;
 use pss::shot::Shot;
@@ -25,7 +26,7 @@ pub struct Row {
     pub adaptive: bool,
     /// Samples a pixel, or the error asked.
     pub asked: f64,
-    /// Median, one thread.
+    /// Of a processor, one thread: other work on the machine does not count. The median.
     pub seconds: f64,
     /// The mean number a pixel.
     pub samples: f64,
@@ -83,7 +84,7 @@ fn row(scene: &'static str, adaptive: bool, asked: f64, shot: &Shot, truth: &[f6
     let mut seconds = Vec::new();
     let mut made = None;
     for _ in 0..TIMES {
-        let start = Instant::now();
+        let start = ProcessTime::now();
         made = Some(film(shot));
         seconds.push(start.elapsed().as_secs_f64());
     }
@@ -117,7 +118,7 @@ fn even_time(rows: &[Row], scene: &str, rmse: f64) -> Option<f64> {
 
 fn table(rows: &[Row]) -> String {
     let mut out = String::from(
-        "# Adaptive and even sampling, time against error\n\nWritten by `cargo bench --bench light`; one thread. The last column is \
+        "# Adaptive and even sampling, time against error\n\nWritten by `cargo bench --bench light`; seconds of a processor, one thread. The last column is \
          the time of even sampling to the same error over that of adaptive sampling.\n\n| scene | sampling | asked | seconds | samples a pixel | rmse, of a display's 0 to 1 | even / adaptive |\n| --- | --- | --- | --- | --- | --- | --- |\n",
     );
     for r in rows {

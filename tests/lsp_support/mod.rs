@@ -1,7 +1,5 @@
 //! A client of `pss lsp`, over its pipes as an editor speaks.
 #![allow(dead_code)]
-// Each program uses a part.
-#![allow(dead_code)]
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};

@@ -40,7 +40,7 @@ impl RoughFace {
         RoughFace { facets, ior, own, others: OnceLock::new() }
     }
 
-    /// Chooses where light that is seen came from ([`super::glass::turn`]).
+    /// Chooses where light that is seen came from ([`super::glass::Glass::turn`]).
     pub fn turn(&self, ratio: f64, eye: DVec3, place: [f64; 2], lobe: f64) -> Option<Turn> {
         let turn = once(self.facets, ratio, eye, self.facets.facing(eye, place), lobe)?;
         Some(Turn { weight: turn.weight / self.kept(ratio, eye.z), ..turn })
