@@ -1,8 +1,8 @@
 //! Time against error of adaptive and of even sampling, on five scenes, with a plot.
 //!
-//!     cargo bench --bench light [-- OUT]
+//!     cargo bench --bench light [-- OUT] [--plot]
 //!
-//! Each scene is rendered once with very many samples, under another seed: the truth. Then with so and so many samples for
+//! With `--plot` the plot is drawn anew from the table that is there. Each scene is rendered once with very many samples, under another seed: the truth. Then with so and so many samples for
 //! every pixel, and with so and so small an error asked, on one thread, in turns; what is timed is the processor, so that other work on the machine does not
 //! count. The error of a picture is the root of the mean
 //! squared difference from the truth of what a display shows, sRGB from 0 to 1, of its linear colours cut at one.
@@ -41,7 +41,14 @@ const TRUTH: u32 = 4096;
 const TIMES: usize = 3;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let only_plot = std::env::args().any(|arg| arg == "--plot");
     let out = std::env::args().skip(1).find(|a| !a.starts_with('-')).unwrap_or("benches/light".to_owned());
+    if only_plot {
+        return plot::write(
+            &read(&fs::read_to_string(format!("{out}/table.md"))?),
+            &format!("{out}/adaptive"),
+        );
+    }
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global()?;
     let mut rows = Vec::new();
     for (name, text) in SCENES {
@@ -114,6 +121,24 @@ fn even_time(rows: &[Row], scene: &str, rmse: f64) -> Option<f64> {
     let pair = even.windows(2).find(|pair| pair[1].rmse <= rmse && rmse <= pair[0].rmse)?;
     let share = (rmse / pair[0].rmse).ln() / (pair[1].rmse / pair[0].rmse).ln();
     Some((pair[0].seconds.ln() + share * (pair[1].seconds / pair[0].seconds).ln()).exp())
+}
+
+/// The rows of a table.
+fn read(table: &str) -> Vec<Row> {
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let number = |i: usize| cells.get(i)?.parse::<f64>().ok();
+        let (scene, _) = SCENES.into_iter().find(|(name, _)| cells.get(1) == Some(name))?;
+        Some(Row {
+            scene,
+            adaptive: cells[2] == "error",
+            asked: number(3)?,
+            seconds: number(4)?,
+            samples: number(5)?,
+            rmse: number(6)?,
+        })
+    };
+    table.lines().filter_map(row).collect()
 }
 
 fn table(rows: &[Row]) -> String {

@@ -38,7 +38,8 @@ fn draw(rows: &[Row], svg: &mut String) -> Result<(), Box<dyn std::error::Error>
             .configure_mesh()
             .x_desc("seconds, one thread")
             .y_desc("rmse of what a display shows, 0 to 1")
-            .x_label_formatter(&|x| format!("{x}"))
+            .max_light_lines(0)
+            .x_label_formatter(&|x| format!("{:.1}", x))
             .y_label_formatter(&|y| format!("{y:.0e}"))
             .label_style(("sans-serif", 13))
             .draw()?;

@@ -11,8 +11,7 @@ use std::cell::Cell;
 use glam::DVec3;
 use libfuzzer_sys::fuzz_target;
 use pss::diag::Diagnostic;
-use pss::geom::Aabb;
-use pss::lang::{Answer, Asked, Geometry, Measured, RayHit};
+use pss::lang::{Answer, Asked, Extent, Geometry, Measured, RayHit};
 use pss::measure::Measuring;
 use pss::prepare::Options;
 use pss::scene::{Scene, Draw, Shape, ShapeKind};
@@ -56,7 +55,7 @@ fn is_cheap(shape: &Shape) -> bool {
 }
 
 impl Geometry for Few {
-    fn bounds(&self, asked: &Asked) -> Answer<Aabb> {
+    fn bounds(&self, asked: &Asked) -> Answer<Extent> {
         self.ask(asked, |m| m.bounds(asked))
     }
 
@@ -80,7 +79,7 @@ impl Geometry for Few {
         self.integral(asked, |m| m.area(asked))
     }
 
-    fn centroid(&self, asked: &Asked) -> Answer<(DVec3, f64)> {
+    fn centroid(&self, asked: &Asked) -> Answer<[Measured; 3]> {
         self.integral(asked, |m| m.centroid(asked))
     }
 
