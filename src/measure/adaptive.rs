@@ -7,9 +7,9 @@
 //!
 //! Which cells are cut follows from a first set of points: what they say of the cells left is too little, as cells where they
 //! missed an edge by chance were not cut. What is told is the sum over a second set, which no cut depends on: whenever cells are
-//! cut it is drawn anew, in those too that are left, as those in which it found an edge would be gone. A cell is at most twice as large as those around it: edges go
-//! on from cell to cell, and where the first set would miss one in a large cell the small ones beside it have seen it. Without
-//! this the sum has a bias, as what is rare is missed where it matters most.
+//! cut it is drawn anew, in those too that are left, as those in which it found an edge would be gone. A cell is at most twice
+//! as large as those around it: edges go on from cell to cell, and where the first set would miss one in a large cell the small
+//! ones beside it have seen it. Without this the sum has a bias, as what is rare is missed where it matters most.
 //!
 //! The bar is Student's, with the degrees of freedom that variances of unlike size leave (Satterthwaite 1946), and no less than
 //! what the two sets differ by. Whoever asks again until something is decided has as many chances to be misled as looks: the

@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 
 use super::finish::{Finish, Toward};
 use super::microfacet::{Facets, reflected};
-use super::rough_face::RoughFace;
+use super::rough_face::{RoughFace, one_turn};
 use super::{Make, Material, color, number, positive, roughness};
 use crate::scene::{BuildError, Call, Decl, Group, Kind, Param};
 
@@ -77,10 +77,7 @@ impl Glass {
         if let Some(rough) = &self.rough {
             return rough.turn(ratio, eye, place, lobe);
         }
-        if lobe < fresnel(eye.z, ratio) {
-            return Some(Turn { dir: reflected(eye, DVec3::Z), weight: 1.0, through: false });
-        }
-        Some(Turn { dir: refracted(eye, DVec3::Z, ratio)?, weight: 1.0, through: true })
+        one_turn(None, ratio, eye, DVec3::Z, lobe)
     }
 }
 

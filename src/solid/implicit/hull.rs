@@ -1,15 +1,16 @@
 //! A box around all points of a box, or of its image, at which a formula holds: certain, and tight where intervals tell it.
 //!
-//! From each side of the image's box a slab is sought that is proved to hold no point: its inner face goes inward by bisection. A slab
-//! is empty where every part of it is: where the interval of the formula's values over a part does not reach zero, each step's narrowed by
-//! its mean value form f(m) + D (X - m) where that is continuous, or where the part lies out of the box (branch and bound: Moore, Kearfott and
-//! Cloud 2009, chapters 5 and 10). Parts are halved across the side over which the values differ most (the smear rule: Kearfott 1996), as
-//! a ridge is not cut along, those with the lowest value in the middle first: so a point at which the formula holds, and the slab is known not to be empty, is met soon. Everything is done in the frame of the
-//! image, whose sides are the box's. Where lines of closed forms would be exact, such as the top of a ball, the bound is
-//! to [`FINEST`]; where intervals tell less it stays as far out as it is proved, never inside.
+//! From each side of the image's box a slab is sought that is proved to hold no point: its inner face goes inward by
+//! bisection. A slab is empty where every part of it is: where the interval of the formula's values over a part does not reach
+//! zero, each step's narrowed by its mean value form f(m) + D (X - m) where that is continuous, or where the part lies out of
+//! the box (branch and bound: Moore, Kearfott and Cloud 2009, chapters 5 and 10). Parts are halved across the side over which
+//! the values differ most (the smear rule: Kearfott 1996), as a ridge is not cut along, those with the lowest value in the
+//! middle first: so a point at which the formula holds, and the slab is known not to be empty, is met soon. Everything is done
+//! in the frame of the image, whose sides are the box's. Where lines of closed forms would be exact, such as the top of a ball,
+//! the bound is to [`FINEST`]; where intervals tell less it stays as far out as it is proved, never inside.
 //!
 //! Degenerate: a formula that holds nowhere has the empty box, if that is proved; one that holds up to a side keeps that side.
-//! Oracle: balls and ellipsoids far from the middle of their box (`tests/extents.rs`).
+//! Oracle: balls and ellipsoids far from the middle of their box (`tests/measure_boxes.rs`).
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
